@@ -1,0 +1,1 @@
+"""NC programs to typed events and back. Knows nothing of `twin`."""

@@ -1,0 +1,53 @@
+"""The one error root of the package; place and text are fields, not just words in a message."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """Where in an NC program something stands.
+
+    Attributes:
+        file: name of the program file, as the user gave it.
+        line: line in the file, counted from 1.
+        column: column in the line, counted from 1; 1 where a whole block is meant.
+        text: the block as written, without its line end.
+    """
+
+    file: str
+    line: int
+    column: int = 1
+    text: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+class GcodeError(Exception):
+    """A refused NC program: what is wrong, where, and what was expected.
+
+    Attributes:
+        place: where the offending word stands.
+        code: short stable name of the kind of mistake, e.g. ``missing-feed``.
+        problem: what is wrong, naming the word and its value.
+        expected: what would have been right.
+    """
+
+    def __init__(self, place: Place, code: str, problem: str, expected: str = "") -> None:
+        self.place = place
+        self.code = code
+        self.problem = problem
+        self.expected = expected
+        super().__init__(str(self))
+
+    def __str__(self) -> str:
+        tail = f"; expected {self.expected}" if self.expected else ""
+        return f"{self.place}: {self.problem}{tail} [{self.code}]"
+
+    def underlined(self) -> str:
+        """The message with the block below it and a caret under the word, for a terminal."""
+        if not self.place.text:
+            return str(self)
+        return f"{self}\n    {self.place.text}\n    {' ' * (self.place.column - 1)}^"

@@ -1,0 +1,157 @@
+"""What an interpreted NC program says: a stream of frozen, typed events in the order of execution.
+
+Lengths are mm, feeds mm/min, spindle speeds rpm, whatever units the program was written in. Points are the
+controlled point (the tool tip as the control believes it to be) in machine coordinates: the gauge point less the
+active tool length offset. Arcs stay arcs; the consumer decides how finely to step them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from gcode.errors import Place
+
+Point: TypeAlias = tuple[float, float, float]
+Plane: TypeAlias = Literal[17, 18, 19]
+
+#: Coordinate indices (first, second, normal) of each plane; the order makes a right-handed frame.
+PLANE_AXES: dict[int, tuple[int, int, int]] = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotionState:
+    """The modal values that hold during a motion.
+
+    Attributes:
+        tool: number of the tool in the spindle (M6 done), 0 for none.
+        spindle_rpm: commanded speed, >= 0; it turns only where ``spindle_direction`` is not 0.
+        spindle_direction: +1 for M3 (clockwise seen from above the tool), -1 for M4, 0 stopped.
+        length_offset_mm: active tool length offset (G43/G44, signed), 0 with G49.
+        wcs: name of the active work offset, e.g. ``G54``.
+        plane: active plane, 17, 18 or 19.
+    """
+
+    tool: int = 0
+    spindle_rpm: float = 0.0
+    spindle_direction: Literal[-1, 0, 1] = 0
+    length_offset_mm: float = 0.0
+    wcs: str = "G54"
+    plane: Plane = 17
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinearMotion:
+    """A straight motion (G0, G1, or a leg of G28/G53).
+
+    Attributes:
+        rapid: True for a positioning motion at the machine's rapid rate; then ``feed_mm_min`` is 0.
+    """
+
+    place: Place
+    state: MotionState
+    start_mm: Point
+    end_mm: Point
+    rapid: bool
+    feed_mm_min: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArcMotion:
+    """A circular or helical motion (G2/G3), never pre-chorded.
+
+    Attributes:
+        centre_mm: centre; its coordinate along the plane's normal equals the start's.
+        turns: signed count of turns, never 0: +1 is counter-clockwise about the plane's positive normal with more
+            than 0 and at most one full turn, -1 clockwise, +2 one full turn more, and so on. Start and end at the
+            same place in the plane make a full circle.
+        feed_mm_min: feed along the (helical) path.
+    """
+
+    place: Place
+    state: MotionState
+    start_mm: Point
+    end_mm: Point
+    centre_mm: Point
+    plane: Plane
+    turns: int
+    feed_mm_min: float
+
+    @property
+    def sweep_rad(self) -> float:
+        """Signed angle swept in the plane, counter-clockwise about its positive normal positive."""
+        i, j, _ = PLANE_AXES[self.plane]
+        start = math.atan2(self.start_mm[j] - self.centre_mm[j], self.start_mm[i] - self.centre_mm[i])
+        end = math.atan2(self.end_mm[j] - self.centre_mm[j], self.end_mm[i] - self.centre_mm[i])
+        sign = 1.0 if self.turns > 0 else -1.0
+        one = (sign * (end - start)) % (2.0 * math.pi)
+        if (self.start_mm[i], self.start_mm[j]) == (self.end_mm[i], self.end_mm[j]) or one == 0.0:
+            one = 2.0 * math.pi
+        return sign * (one + 2.0 * math.pi * (abs(self.turns) - 1))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dwell:
+    """G4: the machine waits; the spindle turns on."""
+
+    place: Place
+    state: MotionState
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolChange:
+    """M6: ``tool`` is now in the spindle."""
+
+    place: Place
+    tool: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpindleChange:
+    """M3, M4, M5 or a new S: see `MotionState` for the meaning of the fields."""
+
+    place: Place
+    spindle_rpm: float
+    spindle_direction: Literal[-1, 0, 1]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoolantChange:
+    """M7, M8, M9."""
+
+    place: Place
+    mist: bool
+    flood: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProgramStop:
+    """M0, M1 (``optional``), or the end by M2/M30/% (``end``). The replay goes on after a stop."""
+
+    place: Place
+    optional: bool
+    end: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Block:
+    """One block begins to execute. Comes before the block's other events."""
+
+    place: Place
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Notice:
+    """A word that was understood and has no effect on motion here, said so that nothing is skipped in silence."""
+
+    place: Place
+    code: str
+    text: str
+
+
+Motion: TypeAlias = LinearMotion | ArcMotion
+Event: TypeAlias = (
+    Block | LinearMotion | ArcMotion | Dwell | ToolChange | SpindleChange | CoolantChange | ProgramStop | Notice
+)

@@ -1,0 +1,1 @@
+"""A machining digital twin: replays NC programs, removes material, predicts cutting forces."""

@@ -1,0 +1,36 @@
+"""The one error root of the package."""
+
+from __future__ import annotations
+
+
+class TwinError(Exception):
+    """A mistake that the user can mend: one message that names file or key, place, value and what was expected."""
+
+
+class JobError(TwinError):
+    """A job file that cannot be used; ``problems`` holds every mistake found, one line each."""
+
+    def __init__(self, file: str, problems: list[str]) -> None:
+        self.file = file
+        self.problems = problems
+        super().__init__("\n".join(f"{file}: {p}" for p in problems))
+
+
+class MeshError(TwinError):
+    """A triangle mesh that is no solid, or a file that is no mesh."""
+
+
+class ToolError(TwinError):
+    """A tool whose shape or edge cannot be built."""
+
+
+class ArchiveError(TwinError):
+    """A run's file that cannot be written or read."""
+
+
+class ReplayError(TwinError):
+    """A program that cannot be replayed on this job: the message names the NC line."""
+
+
+class CollisionError(ReplayError):
+    """A collision in a strict replay."""

@@ -1,0 +1,1 @@
+"""Polygons on planes and the stores of slices; the numba kernels."""

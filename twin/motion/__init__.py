@@ -1,0 +1,1 @@
+"""Tool motion in the workpiece frame, and what it sweeps."""

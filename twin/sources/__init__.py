@@ -1,0 +1,1 @@
+"""Where records and measured logs come from."""

@@ -1,0 +1,1 @@
+"""Tool shapes by their meridian, and the points of their cutting edges."""
