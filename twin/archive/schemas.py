@@ -1,0 +1,248 @@
+"""Topics of a run's file and the protobuf messages on them, as tables.
+
+The descriptors are built from the tables below, so no protobuf compiler is needed, and every file carries them. The
+``foxglove.*`` messages have the field numbers of the published schemas, so that viewers draw them; fields numbered
+from 100 are additions of this program (viewers skip them) that let a reader give back exactly what was written.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any, TypeAlias
+
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, timestamp_pb2
+from google.protobuf.message import Message
+
+PROFILE = "twin"
+ENCODING = "protobuf"
+
+FORCE_TOPIC = "/force"
+ENGAGEMENT_TOPIC = "/engagement"
+POSE_TOPIC = "/machine/tool"
+TOOL_SHAPE_TOPIC = "/machine/tool/shape"
+NC_TOPIC = "/nc"
+COLLISION_TOPIC = "/collision"
+#: Every patch of the workpiece has its own topic, ``/workpiece/<patch>``, so that a viewer replaces it alone.
+WORKPIECE_PREFIX = "/workpiece/"
+
+FORCE = "twin.CuttingForce"
+ENGAGEMENT = "twin.Engagement"
+TRANSFORM = "foxglove.FrameTransform"
+CLOUD = "foxglove.PointCloud"
+LOG = "foxglove.Log"
+
+#: Message on each topic; a topic that is not listed is a patch of the workpiece and carries `CLOUD`.
+TOPICS: dict[str, str] = {
+    FORCE_TOPIC: FORCE,
+    ENGAGEMENT_TOPIC: ENGAGEMENT,
+    POSE_TOPIC: TRANSFORM,
+    TOOL_SHAPE_TOPIC: CLOUD,
+    NC_TOPIC: LOG,
+    COLLISION_TOPIC: LOG,
+}
+
+WORKPIECE_FRAME = "workpiece"
+TOOL_FRAME = "tool"
+
+_TIMESTAMP = "google.protobuf.Timestamp"
+
+Field: TypeAlias = tuple[str, int, str]
+
+#: Fields (name, number, type) of every message; ``repeated`` goes before the type, as in a .proto file.
+MESSAGES: dict[str, tuple[Field, ...]] = {
+    FORCE: (
+        ("t_s", 1, "double"),
+        ("spindle_angle_rad", 2, "double"),
+        ("fx_n", 3, "double"),
+        ("fy_n", 4, "double"),
+        ("fz_n", 5, "double"),
+        ("torque_nm", 6, "double"),
+        ("power_w", 7, "double"),
+        ("nc_line", 8, "fixed32"),
+        ("tool", 9, "fixed32"),
+    ),
+    ENGAGEMENT: (
+        ("step", 1, "uint64"),
+        ("t_s", 2, "double"),
+        ("duration_s", 3, "double"),
+        ("start_x_mm", 4, "double"),
+        ("start_y_mm", 5, "double"),
+        ("start_z_mm", 6, "double"),
+        ("end_x_mm", 7, "double"),
+        ("end_y_mm", 8, "double"),
+        ("end_z_mm", 9, "double"),
+        ("nc_line", 10, "uint32"),
+        ("tool", 11, "uint32"),
+        ("rapid", 12, "bool"),
+        ("feed_mm_min", 13, "double"),
+        ("spindle_rpm", 14, "double"),
+        ("axial_depth_mm", 15, "double"),
+        ("radial_width_mm", 16, "double"),
+        ("arc_rad", 17, "double"),
+        ("chip_thickness_mm", 18, "double"),
+        ("removal_rate_mm3_s", 19, "double"),
+        ("cutting", 20, "bool"),
+        ("samples", 21, "uint64"),
+    ),
+    "foxglove.Vector3": (("x", 1, "double"), ("y", 2, "double"), ("z", 3, "double")),
+    "foxglove.Quaternion": (("x", 1, "double"), ("y", 2, "double"), ("z", 3, "double"), ("w", 4, "double")),
+    "foxglove.Pose": (("position", 1, "foxglove.Vector3"), ("orientation", 2, "foxglove.Quaternion")),
+    TRANSFORM: (
+        ("timestamp", 1, _TIMESTAMP),
+        ("parent_frame_id", 2, "string"),
+        ("child_frame_id", 3, "string"),
+        ("translation", 4, "foxglove.Vector3"),
+        ("rotation", 5, "foxglove.Quaternion"),
+    ),
+    "foxglove.PackedElementField": (
+        ("name", 1, "string"),
+        ("offset", 2, "fixed32"),
+        ("type", 3, "foxglove.PackedElementField.NumericType"),
+    ),
+    CLOUD: (
+        ("timestamp", 1, _TIMESTAMP),
+        ("frame_id", 2, "string"),
+        ("pose", 3, "foxglove.Pose"),
+        ("point_stride", 4, "fixed32"),
+        ("fields", 5, "repeated foxglove.PackedElementField"),
+        ("data", 6, "bytes"),
+        ("t_s", 100, "double"),
+        ("patch", 101, "string"),
+        ("triangles", 102, "bytes"),
+    ),
+    LOG: (
+        ("timestamp", 1, _TIMESTAMP),
+        ("level", 2, "foxglove.Log.Level"),
+        ("message", 3, "string"),
+        ("name", 4, "string"),
+        ("file", 5, "string"),
+        ("line", 6, "fixed32"),
+        ("t_s", 100, "double"),
+        ("tool", 101, "uint32"),
+        ("point_mm", 102, "foxglove.Vector3"),
+        ("volume_mm3", 103, "double"),
+    ),
+}
+
+#: Values of the enumerations, numbered from 0; an enumeration stands inside the message that its name begins with.
+ENUMS: dict[str, tuple[str, ...]] = {
+    "foxglove.Log.Level": ("UNKNOWN", "DEBUG", "INFO", "WARNING", "ERROR", "FATAL"),
+    "foxglove.PackedElementField.NumericType": (
+        *("UNKNOWN", "UINT8", "INT8", "UINT16", "INT16", "UINT32", "INT32", "FLOAT32", "FLOAT64"),
+    ),
+}
+
+INFO, WARNING, ERROR = 2, 3, 4
+UINT8, FLOAT32 = 1, 7
+
+_Proto = descriptor_pb2.FieldDescriptorProto
+_SCALARS: dict[str, Any] = {
+    "double": _Proto.TYPE_DOUBLE,
+    "fixed32": _Proto.TYPE_FIXED32,
+    "uint32": _Proto.TYPE_UINT32,
+    "uint64": _Proto.TYPE_UINT64,
+    "bool": _Proto.TYPE_BOOL,
+    "string": _Proto.TYPE_STRING,
+    "bytes": _Proto.TYPE_BYTES,
+}
+
+
+def message_on(topic: str) -> str:
+    """Full name of the message on a topic."""
+    return TOPICS.get(topic, CLOUD)
+
+
+@cache
+def message_class(name: str) -> type[Any]:
+    """Generated class of a message, by full name, e.g. ``twin.CuttingForce``."""
+    return message_factory.GetMessageClass(_pool().FindMessageTypeByName(name))
+
+
+@cache
+def descriptor_set(name: str) -> bytes:
+    """Serialised ``FileDescriptorSet`` with a message and all that it needs: the data of an MCAP schema record."""
+    files = descriptor_pb2.FileDescriptorSet()
+    if _TIMESTAMP in {t.removeprefix("repeated ") for m in _closure(name) for _, _, t in MESSAGES[m]}:
+        timestamp_pb2.DESCRIPTOR.CopyToProto(files.file.add())
+    files.file.append(_file(name))
+    return files.SerializeToString(deterministic=True)
+
+
+def embedded_class(schema: bytes, name: str) -> type[Message]:
+    """Class of a message described by a file's own schema, e.g. one written by another program.
+
+    Raises:
+        TypeError, KeyError, google.protobuf.message.DecodeError: the bytes are no schema of that message.
+    """
+    pool = descriptor_pool.DescriptorPool()
+    for file in descriptor_pb2.FileDescriptorSet.FromString(schema).file:
+        pool.Add(file)
+    return message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
+
+
+def proto_text(name: str) -> str:
+    """A message as the text of a .proto file, for people."""
+    lines = [f"message {name.rpartition('.')[2]} {{"]
+    for enum, values in _enums_of(name):
+        body = " ".join(f"{value} = {number};" for number, value in enumerate(values))
+        lines.append(f"  enum {enum} {{ {body} }}")
+    lines += [f"  {kind} {field} = {number};" for field, number, kind in MESSAGES[name]]
+    return "\n".join([*lines, "}"])
+
+
+def _enums_of(name: str) -> list[tuple[str, tuple[str, ...]]]:
+    """Short names and values of the enumerations inside a message."""
+    return [(e.rpartition(".")[2], v) for e, v in ENUMS.items() if e.rpartition(".")[0] == name]
+
+
+def _closure(name: str) -> list[str]:
+    """A message and the messages that it contains, contained ones first."""
+    inner = [t.removeprefix("repeated ") for _, _, t in MESSAGES[name]]
+    found = [m for t in inner if t in MESSAGES for m in _closure(t)]
+    return list(dict.fromkeys([*found, name]))
+
+
+def _file(name: str) -> descriptor_pb2.FileDescriptorProto:
+    """One file for one schema: the message with the messages that it contains."""
+    file = descriptor_pb2.FileDescriptorProto(name=f"{name}.proto", package=name.partition(".")[0], syntax="proto3")
+    for message in _closure(name):
+        if any(kind == _TIMESTAMP for _, _, kind in MESSAGES[message]):
+            file.dependency[:] = [timestamp_pb2.DESCRIPTOR.name]
+        _fill(file.message_type.add(), message)
+    return file
+
+
+def _fill(proto: descriptor_pb2.DescriptorProto, name: str) -> None:
+    """Write the table of one message into its descriptor."""
+    proto.name = name.rpartition(".")[2]
+    for enum, values in _enums_of(name):
+        nested = proto.enum_type.add(name=enum)
+        for number, value in enumerate(values):
+            nested.value.add(name=value, number=number)
+    for field, number, kind in MESSAGES[name]:
+        bare = kind.removeprefix("repeated ")
+        label = _Proto.LABEL_OPTIONAL if bare == kind else _Proto.LABEL_REPEATED
+        made = proto.field.add(name=field, number=number, label=label)
+        if bare in _SCALARS:
+            made.type = _SCALARS[bare]
+        else:
+            made.type = _Proto.TYPE_ENUM if bare in ENUMS else _Proto.TYPE_MESSAGE
+            made.type_name = f".{bare}"
+
+
+@cache
+def _pool() -> descriptor_pool.DescriptorPool:
+    """A pool of this program's own, so that it never meets other definitions of the same names."""
+    pool = descriptor_pool.DescriptorPool()
+    timestamp = descriptor_pb2.FileDescriptorProto()
+    timestamp_pb2.DESCRIPTOR.CopyToProto(timestamp)
+    pool.Add(timestamp)
+    for package in ("twin", "foxglove"):
+        file = descriptor_pb2.FileDescriptorProto(name=f"{package}.proto", package=package, syntax="proto3")
+        if package == "foxglove":
+            file.dependency.append(timestamp.name)
+        for message in MESSAGES:
+            if message.startswith(package + "."):
+                _fill(file.message_type.add(), message)
+        pool.Add(file)
+    return pool
