@@ -1,0 +1,767 @@
+"""Column cells: polygons on parallel planes cut into small cells; compiled.
+
+A plane is divided into columns along u and tiles along v, all squares of one size. A cell is EMPTY, FULL, or PARTIAL
+with its own list of edges. An edge is a row (u0, v0, u1, v1, sign), u0 < u1, sign +1 where material lies below it and -1
+where it lies above; vertical edges are implied. Where material goes on through the top of a cell a closing edge lies
+there, so that a point is in material when an odd number of the cell's edges lies above it (half-open in u).
+
+Cutting a strip lo(u) <= v <= hi(u) keeps the parts of the edges that are not above lo or are above hi, and adds the
+parts of lo and hi that have an odd number of edges above them. Every part is classified once and both uses share the
+same u, so parity cannot leak.
+
+Planes are built when first touched: ``base[k]`` is -1 before, and the index of the plane's first cell after.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+
+EMPTY, FULL, PARTIAL = 0, 1, 2
+#: What `cut_planes` and `fill_plane` return when they ran out of room, to be called again.
+DONE, POOL_FULL, SCRATCH_FULL = 0, 1, 2
+_SMALLEST_BLOCK = 8
+
+
+@njit(cache=True, nogil=True)
+def _line(u: float, ua: float, va: float, ub: float, vb: float) -> float:
+    """v on the straight line through two points, exact at both."""
+    if u == ua:
+        return va
+    if u == ub:
+        return vb
+    return va + (vb - va) * ((u - ua) / (ub - ua))
+
+
+@njit(cache=True, nogil=True)
+def _block_class(count: int) -> int:
+    """Smallest power of two, as an exponent above the smallest block, that holds ``count`` edges."""
+    size = _SMALLEST_BLOCK
+    exponent = 0
+    while size < count:
+        size *= 2
+        exponent += 1
+    return exponent
+
+
+@njit(cache=True, nogil=True)
+def _release(cell: int, start: NDArray[np.int64], room: NDArray[np.int64], pool: FloatArray, free: NDArray[np.int64]) -> None:
+    if room[cell] > 0:
+        exponent = _block_class(room[cell])
+        pool[start[cell], 0] = float(free[exponent])
+        free[exponent] = start[cell]
+        room[cell] = 0
+
+
+@njit(cache=True, nogil=True)
+def _store(
+    cell: int,
+    edges: FloatArray,
+    count: int,
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    room: NDArray[np.int64],
+    pool: FloatArray,
+    free: NDArray[np.int64],
+) -> bool:
+    """Give a cell its edges; False when the pool has no room (nothing is changed then).
+
+    ``free[e]`` heads the list of released blocks of 8 * 2**e edges; its last entry is the pool's end so far.
+    """
+    if count > room[cell]:
+        exponent = _block_class(count)
+        block = _SMALLEST_BLOCK << exponent
+        last = len(free) - 1
+        if free[exponent] >= 0:
+            place = free[exponent]
+            free[exponent] = int(pool[place, 0])
+        else:
+            place = free[last]
+            if place + block > len(pool):
+                return False
+            free[last] = place + block
+        _release(cell, start, room, pool, free)
+        start[cell] = place
+        room[cell] = block
+    begin = start[cell]
+    for i in range(count):
+        for c in range(5):
+            pool[begin + i, c] = edges[i, c]
+    size[cell] = count
+    if count == 0:
+        _release(cell, start, room, pool, free)
+        state[cell] = EMPTY
+    else:
+        state[cell] = PARTIAL
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _cell_area(edges: FloatArray, begin: int, count: int, floor: float) -> float:
+    area = 0.0
+    for i in range(begin, begin + count):
+        area += edges[i, 4] * (0.5 * (edges[i, 1] + edges[i, 3]) - floor) * (edges[i, 2] - edges[i, 0])
+    return area
+
+
+@njit(cache=True, nogil=True)
+def _emit(
+    out: FloatArray, count: int, ua: float, ub: float, u0: float, v0: float, u1: float, v1: float, sign: float
+) -> int:
+    """Append the part [ua, ub] of an edge; parts without length are dropped. The caller has made sure of room."""
+    if ub > ua:
+        out[count, 0] = ua
+        out[count, 1] = _line(ua, u0, v0, u1, v1)
+        out[count, 2] = ub
+        out[count, 3] = _line(ub, u0, v0, u1, v1)
+        out[count, 4] = sign
+        return count + 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _crossing(a: float, b: float, da: float, db: float) -> float:
+    """Where a linear difference, da at a and db at b, of unlike sides, passes 0; in [a, b]."""
+    u = a + (b - a) * (da / (da - db))
+    return min(max(u, a), b)
+
+
+@njit(cache=True, nogil=True)
+def _split_segments(
+    nodes: FloatArray, first: int, last: int, a0: float, a1: float, floor: float, top: float, segments: FloatArray
+) -> int:
+    """The strip over [a0, a1] as linear pieces that cross neither the floor nor the top of a tile.
+
+    Rows of ``segments``: ua, ub, lo(ua), lo(ub), hi(ua), hi(ub), lo inside the tile, hi inside the tile. Pieces that
+    miss the tile are left out. Returns the number of rows, or -1 when they do not fit.
+    """
+    count = 0
+    cuts = np.empty(6)
+    for k in range(first, last):
+        ua = max(a0, nodes[k, 0])
+        ub = min(a1, nodes[k + 1, 0])
+        if ub <= ua:
+            continue
+        n0, n1 = nodes[k, 0], nodes[k + 1, 0]
+        lo_a = _line(ua, n0, nodes[k, 1], n1, nodes[k + 1, 1])
+        lo_b = _line(ub, n0, nodes[k, 1], n1, nodes[k + 1, 1])
+        hi_a = _line(ua, n0, nodes[k, 2], n1, nodes[k + 1, 2])
+        hi_b = _line(ub, n0, nodes[k, 2], n1, nodes[k + 1, 2])
+        if min(lo_a, lo_b) >= top or max(hi_a, hi_b) <= floor:
+            continue
+        n = 1
+        cuts[0] = ua
+        for level in (floor, top):
+            if (lo_a > level) != (lo_b > level):
+                cuts[n] = _crossing(ua, ub, lo_a - level, lo_b - level)
+                n += 1
+            if (hi_a > level) != (hi_b > level):
+                cuts[n] = _crossing(ua, ub, hi_a - level, hi_b - level)
+                n += 1
+        cuts[n] = ub
+        if n > 1:
+            cuts[: n + 1].sort()
+        for i in range(n):
+            pa, pb = cuts[i], cuts[i + 1]
+            if pb <= pa:
+                continue
+            if count >= len(segments):
+                return -1
+            middle = 0.5 * (pa + pb)
+            lo_m = _line(middle, ua, lo_a, ub, lo_b)
+            hi_m = _line(middle, ua, hi_a, ub, hi_b)
+            if lo_m >= top or hi_m <= floor:
+                continue
+            segments[count, 0] = pa
+            segments[count, 1] = pb
+            segments[count, 2] = _line(pa, ua, lo_a, ub, lo_b)
+            segments[count, 3] = _line(pb, ua, lo_a, ub, lo_b)
+            segments[count, 4] = _line(pa, ua, hi_a, ub, hi_b)
+            segments[count, 5] = _line(pb, ua, hi_a, ub, hi_b)
+            segments[count, 6] = 1.0 if lo_m > floor else 0.0
+            segments[count, 7] = 1.0 if hi_m < top else 0.0
+            count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _emit_odd(
+    toggles: FloatArray, n: int, segments: FloatArray, pieces: int, column: int, sign: float, out: FloatArray, count: int
+) -> int:
+    """Add the parts of lo (column 2) or hi (column 4) between an odd and the next toggle; -1 when they do not fit."""
+    if n == 0:
+        return count
+    toggles[:n].sort()
+    m = 0
+    for i in range(0, n, 2):
+        ua, ub = toggles[i], toggles[i + 1]
+        if ub <= ua:
+            continue
+        while m > 0 and segments[m, 0] > ua:
+            m -= 1
+        while m < pieces and segments[m, 0] < ub:
+            if segments[m, 1] > ua:
+                if count >= len(out):
+                    return -1
+                s0, s1 = segments[m, 0], segments[m, 1]
+                count = _emit(
+                    out, count, max(ua, s0), min(ub, s1), s0, segments[m, column], s1, segments[m, column + 1], sign
+                )
+            m += 1
+        m = min(m, pieces - 1)
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _cut_edges(
+    edges: FloatArray,
+    begin: int,
+    size: int,
+    segments: FloatArray,
+    pieces: int,
+    toggles_lo: FloatArray,
+    toggles_hi: FloatArray,
+    out: FloatArray,
+) -> int:
+    """The edges left of a cell when the strip is taken out; returns their number, or -1 when they do not fit."""
+    count = 0
+    n_lo = 0
+    n_hi = 0
+    for e in range(begin, begin + size):
+        u0, v0, u1, v1, sign = edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], edges[e, 4]
+        kept = True
+        since = u0
+        end = u0
+        for m in range(pieces):
+            if segments[m, 1] <= u0:
+                continue
+            if segments[m, 0] >= u1:
+                break
+            a = max(segments[m, 0], u0)
+            b = min(segments[m, 1], u1)
+            if b <= a:
+                continue
+            if count + 3 >= len(out) or n_lo + 3 >= len(toggles_lo) or n_hi + 3 >= len(toggles_hi):
+                return -1
+            if a > end and not kept:
+                kept = True
+                since = end
+            end = b
+            va = _line(a, u0, v0, u1, v1)
+            vb = _line(b, u0, v0, u1, v1)
+            s0, s1 = segments[m, 0], segments[m, 1]
+            above_a = True
+            above_b = True
+            u_lo = b
+            if segments[m, 6] > 0.0:
+                da = va - _line(a, s0, segments[m, 2], s1, segments[m, 3])
+                db = vb - _line(b, s0, segments[m, 2], s1, segments[m, 3])
+                above_a = da > 0.0
+                above_b = db > 0.0
+                if above_a != above_b:
+                    u_lo = _crossing(a, b, da, db)
+                if above_a:
+                    toggles_lo[n_lo] = a
+                    n_lo += 1
+                if above_a != above_b:
+                    toggles_lo[n_lo] = u_lo
+                    n_lo += 1
+                if above_b:
+                    toggles_lo[n_lo] = b
+                    n_lo += 1
+            over_a = False
+            over_b = False
+            u_hi = b
+            if segments[m, 7] > 0.0:
+                da = va - _line(a, s0, segments[m, 4], s1, segments[m, 5])
+                db = vb - _line(b, s0, segments[m, 4], s1, segments[m, 5])
+                over_a = da > 0.0
+                over_b = db > 0.0
+                if over_a != over_b:
+                    u_hi = _crossing(a, b, da, db)
+                if over_a:
+                    toggles_hi[n_hi] = a
+                    n_hi += 1
+                if over_a != over_b:
+                    toggles_hi[n_hi] = u_hi
+                    n_hi += 1
+                if over_b:
+                    toggles_hi[n_hi] = b
+                    n_hi += 1
+            above = above_a
+            over = over_a
+            keep = over or not above
+            if keep != kept:
+                if kept:
+                    count = _emit(out, count, since, a, u0, v0, u1, v1, sign)
+                since = a
+                kept = keep
+            for turn in range(2):
+                first_is_lo = u_lo <= u_hi
+                use_lo = first_is_lo if turn == 0 else not first_is_lo
+                if use_lo:
+                    if above_a == above_b:
+                        continue
+                    u = u_lo
+                    above = above_b
+                else:
+                    if over_a == over_b:
+                        continue
+                    u = u_hi
+                    over = over_b
+                keep = over or not above
+                if keep != kept:
+                    if kept:
+                        count = _emit(out, count, since, u, u0, v0, u1, v1, sign)
+                    since = u
+                    kept = keep
+        if not kept and end < u1:
+            kept = True
+            since = end
+        if kept:
+            if count >= len(out):
+                return -1
+            count = _emit(out, count, since, u1, u0, v0, u1, v1, sign)
+    count = _emit_odd(toggles_lo, n_lo, segments, pieces, 2, 1.0, out, count)
+    if count < 0:
+        return -1
+    return _emit_odd(toggles_hi, n_hi, segments, pieces, 4, -1.0, out, count)
+
+
+@njit(cache=True, nogil=True)
+def cut_planes(
+    first: int,
+    offsets: NDArray[np.int64],
+    nodes: FloatArray,
+    grid: FloatArray,
+    columns: int,
+    tiles: int,
+    base: NDArray[np.int64],
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    room: NDArray[np.int64],
+    pool: FloatArray,
+    free: NDArray[np.int64],
+    segments: FloatArray,
+    toggles_lo: FloatArray,
+    toggles_hi: FloatArray,
+    out: FloatArray,
+    cursor: NDArray[np.int64],
+    apply: bool,
+    removed: FloatArray,
+) -> int:
+    """Subtract strips from planes, or only measure what they would remove.
+
+    Args:
+        first, offsets, nodes: see `twin.geometry.strips.Strips`.
+        grid: lower u, lower v, cell size.
+        cursor: shape (3,): plane, column, tile to go on from; 0 at the first call, kept between calls.
+        apply: False leaves the planes as they are.
+        removed: shape (planes,), area taken from each plane, added to.
+
+    Returns:
+        DONE, or POOL_FULL / SCRATCH_FULL: make room and call again with the same cursor.
+    """
+    u_low, v_low, h = grid[0], grid[1], grid[2]
+    while cursor[0] < len(offsets) - 1:
+        i = cursor[0]
+        n0, n1 = offsets[i], offsets[i + 1] - 1
+        cells = base[first + i]
+        if n1 <= n0 or cells < 0:
+            cursor[0] += 1
+            continue
+        u_first, u_last = nodes[n0, 0], nodes[n1, 0]
+        last_column = min(columns - 1, int(math.floor((u_last - u_low) / h)))
+        column = max(max(0, int(math.floor((u_first - u_low) / h))), cursor[1])
+        node = n0
+        while column <= last_column:
+            c0 = u_low + column * h
+            c1 = u_low + (column + 1) * h
+            a0 = max(c0, u_first)
+            a1 = min(c1, u_last)
+            if a1 > a0:
+                while node < n1 - 1 and nodes[node + 1, 0] <= a0:
+                    node += 1
+                end = node
+                lo_a = _line(a0, nodes[node, 0], nodes[node, 1], nodes[node + 1, 0], nodes[node + 1, 1])
+                hi_a = _line(a0, nodes[node, 0], nodes[node, 2], nodes[node + 1, 0], nodes[node + 1, 2])
+                lo_min, lo_max, hi_min, hi_max = lo_a, lo_a, hi_a, hi_a
+                while end < n1:
+                    k = end
+                    end += 1
+                    u = min(a1, nodes[end, 0])
+                    lo = _line(u, nodes[k, 0], nodes[k, 1], nodes[end, 0], nodes[end, 1])
+                    hi = _line(u, nodes[k, 0], nodes[k, 2], nodes[end, 0], nodes[end, 2])
+                    lo_min, lo_max = min(lo_min, lo), max(lo_max, lo)
+                    hi_min, hi_max = min(hi_min, hi), max(hi_max, hi)
+                    if nodes[end, 0] >= a1:
+                        break
+                tile = max(max(0, int(math.floor((lo_min - v_low) / h))), cursor[2])
+                last_tile = min(tiles - 1, int(math.floor((hi_max - v_low) / h)))
+                spans = a0 == c0 and a1 == c1
+                while tile <= last_tile:
+                    cell = cells + column * tiles + tile
+                    floor = v_low + tile * h
+                    top = v_low + (tile + 1) * h
+                    if state[cell] == EMPTY:
+                        tile += 1
+                        continue
+                    if spans and lo_max <= floor and hi_min >= top:
+                        if state[cell] == FULL:
+                            removed[i] += (c1 - c0) * (top - floor)
+                        else:
+                            removed[i] += _cell_area(pool, start[cell], size[cell], floor)
+                        if apply:
+                            _release(cell, start, room, pool, free)
+                            size[cell] = 0
+                            state[cell] = EMPTY
+                        tile += 1
+                        continue
+                    pieces = _split_segments(nodes, node, end, a0, a1, floor, top, segments)
+                    count = 0
+                    before = 0.0
+                    if pieces > 0:
+                        if state[cell] == FULL:
+                            row = len(out) - 1
+                            out[row, 0], out[row, 1], out[row, 2], out[row, 3] = c0, top, c1, top
+                            out[row, 4] = 1.0
+                            before = (c1 - c0) * (top - floor)
+                            count = _cut_edges(out, row, 1, segments, pieces, toggles_lo, toggles_hi, out[:row])
+                        else:
+                            before = _cell_area(pool, start[cell], size[cell], floor)
+                            count = _cut_edges(
+                                pool, start[cell], size[cell], segments, pieces, toggles_lo, toggles_hi, out
+                            )
+                    if pieces < 0 or count < 0:
+                        cursor[1] = column
+                        cursor[2] = tile
+                        return SCRATCH_FULL
+                    if pieces > 0:
+                        if apply and not _store(cell, out, count, state, start, size, room, pool, free):
+                            cursor[1] = column
+                            cursor[2] = tile
+                            return POOL_FULL
+                        removed[i] += before - _cell_area(out, 0, count, floor)
+                    tile += 1
+            cursor[2] = 0
+            column += 1
+        cursor[1] = 0
+        cursor[0] += 1
+    return DONE
+
+
+@njit(cache=True, nogil=True)
+def fill_plane(
+    edges: FloatArray,
+    cells: int,
+    grid: FloatArray,
+    columns: int,
+    tiles: int,
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    room: NDArray[np.int64],
+    pool: FloatArray,
+    free: NDArray[np.int64],
+    toggles: FloatArray,
+    work: FloatArray,
+    out: FloatArray,
+    cursor: NDArray[np.int64],
+) -> int:
+    """Build one plane's cells from the edges of its rings.
+
+    Args:
+        edges: shape (n, 5), all non-vertical ring edges as (u0, v0, u1, v1, sign).
+        work: shape (2 n + more, 5), scratch for the edges of one column; as ``out``.
+        cursor: shape (1,): column to go on from.
+
+    Returns:
+        DONE, POOL_FULL or SCRATCH_FULL, as `cut_planes`.
+    """
+    u_low, v_low, h = grid[0], grid[1], grid[2]
+    while cursor[0] < columns:
+        column = cursor[0]
+        c0 = u_low + column * h
+        c1 = u_low + (column + 1) * h
+        n = 0
+        for e in range(len(edges)):
+            a, b = max(c0, edges[e, 0]), min(c1, edges[e, 2])
+            if b > a:
+                if n >= len(work):
+                    return SCRATCH_FULL
+                n = _emit(work, n, a, b, edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], edges[e, 4])
+        for tile in range(tiles):
+            top = v_low + (tile + 1) * h
+            count = 0
+            rest = 0
+            n_toggles = 0
+            for e in range(n):
+                if count + 2 >= len(out) or n_toggles + 2 >= len(toggles):
+                    return SCRATCH_FULL
+                u0, v0, u1, v1, sign = work[e, 0], work[e, 1], work[e, 2], work[e, 3], work[e, 4]
+                above0 = v0 > top
+                above1 = v1 > top
+                u = u1 if above0 == above1 else _crossing(u0, u1, v0 - top, v1 - top)
+                if above0:
+                    toggles[n_toggles], toggles[n_toggles + 1] = u0, u
+                    n_toggles += 2
+                elif above1:
+                    toggles[n_toggles], toggles[n_toggles + 1] = u, u1
+                    n_toggles += 2
+                if above0 != above1:
+                    low0, low1, high0, high1 = (u, u1, u0, u) if above0 else (u0, u, u, u1)
+                    count = _emit(out, count, low0, low1, u0, v0, u1, v1, sign)
+                    rest = _emit(work, rest, high0, high1, u0, v0, u1, v1, sign)
+                elif above0:
+                    rest = _emit(work, rest, u0, u1, u0, v0, u1, v1, sign)
+                else:
+                    count = _emit(out, count, u0, u1, u0, v0, u1, v1, sign)
+            toggles[:n_toggles].sort()
+            for t in range(0, n_toggles, 2):
+                if count >= len(out):
+                    return SCRATCH_FULL
+                count = _emit(out, count, toggles[t], toggles[t + 1], c0, top, c1, top, 1.0)
+            n = rest
+            cell = cells + column * tiles + tile
+            closed = _spans_top(out, count, c0, c1, top)
+            if closed:
+                state[cell] = FULL
+            elif not _store(cell, out, count, state, start, size, room, pool, free):
+                return POOL_FULL
+        cursor[0] += 1
+    return DONE
+
+
+@njit(cache=True, nogil=True)
+def _spans_top(edges: FloatArray, count: int, c0: float, c1: float, top: float) -> bool:
+    """Whether a cell's edges are nothing but a closing edge over its whole width."""
+    covered = 0.0
+    for e in range(count):
+        if edges[e, 1] != top or edges[e, 3] != top or edges[e, 4] < 0.0:
+            return False
+        covered += edges[e, 2] - edges[e, 0]
+    return count > 0 and covered >= (c1 - c0) * (1.0 - 1e-12)
+
+
+@njit(cache=True, nogil=True)
+def in_plane(
+    u: float,
+    v: float,
+    cells: int,
+    grid: FloatArray,
+    columns: int,
+    tiles: int,
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    pool: FloatArray,
+) -> bool:
+    """Whether a point of a plane lies in material."""
+    column = int(math.floor((u - grid[0]) / grid[2]))
+    tile = int(math.floor((v - grid[1]) / grid[2]))
+    if column < 0 or tile < 0 or column >= columns or tile >= tiles:
+        return False
+    cell = cells + column * tiles + tile
+    if state[cell] != PARTIAL:
+        return state[cell] == FULL
+    inside = False
+    for e in range(start[cell], start[cell] + size[cell]):
+        if pool[e, 0] <= u < pool[e, 2]:
+            if _line(u, pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3]) > v:
+                inside = not inside
+    return inside
+
+
+@njit(cache=True, nogil=True)
+def contains(
+    points: FloatArray,
+    normal_axis: int,
+    u_axis: int,
+    v_axis: int,
+    low: float,
+    pitch: float,
+    grid: FloatArray,
+    columns: int,
+    tiles: int,
+    base: NDArray[np.int64],
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    pool: FloatArray,
+    votes: NDArray[np.int8],
+    needed_low: int,
+    needed_high: int,
+) -> None:
+    """Add one vote to each point that lies in material on the nearest plane of a family.
+
+    Points whose votes are below ``needed_low`` or above ``needed_high`` already are left alone: their case is settled.
+    """
+    planes = len(base)
+    for i in range(len(points)):
+        if votes[i] < needed_low or votes[i] > needed_high:
+            continue
+        k = int(math.floor((points[i, normal_axis] - low) / pitch))
+        if k < 0 or k >= planes or base[k] < 0:
+            continue
+        if in_plane(
+            points[i, u_axis], points[i, v_axis], base[k], grid, columns, tiles, state, start, size, pool
+        ):
+            votes[i] += 1
+
+
+@njit(cache=True, nogil=True)
+def column_crossings(
+    u: float,
+    cells: int,
+    grid: FloatArray,
+    columns: int,
+    tiles: int,
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    pool: FloatArray,
+    out: FloatArray,
+) -> int:
+    """Ends of the material on the line u, increasing, an even number; -1 when ``out`` is too short."""
+    column = int(math.floor((u - grid[0]) / grid[2]))
+    if column < 0 or column >= columns:
+        return 0
+    n = 0
+    for tile in range(tiles):
+        cell = cells + column * tiles + tile
+        if state[cell] == EMPTY:
+            continue
+        floor = grid[1] + tile * grid[2]
+        top = grid[1] + (tile + 1) * grid[2]
+        first = n
+        if n + 2 + size[cell] > len(out):
+            return -1
+        if state[cell] == FULL:
+            out[n], out[n + 1] = floor, top
+            n += 2
+        else:
+            for e in range(start[cell], start[cell] + size[cell]):
+                if pool[e, 0] <= u < pool[e, 2]:
+                    out[n] = _line(u, pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3])
+                    n += 1
+            if (n - first) % 2 == 1:
+                out[n] = floor
+                n += 1
+            out[first:n].sort()
+        if first > 0 and n > first and out[first] <= out[first - 1]:
+            for m in range(first - 1, n - 2):
+                out[m] = out[m + 2]
+            n -= 2
+    return n
+
+
+@njit(cache=True, nogil=True)
+def all_crossings(
+    lines: FloatArray,
+    cells: int,
+    grid: FloatArray,
+    columns: int,
+    tiles: int,
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    pool: FloatArray,
+    offsets: NDArray[np.int64],
+    out: FloatArray,
+) -> int:
+    """`column_crossings` for many lines; returns how many values were written, or -1 when ``out`` is too short."""
+    n = 0
+    offsets[0] = 0
+    for i in range(len(lines)):
+        written = column_crossings(lines[i], cells, grid, columns, tiles, state, start, size, pool, out[n:])
+        if written < 0:
+            return -1
+        n += written
+        offsets[i + 1] = n
+    return n
+
+
+@njit(cache=True, nogil=True)
+def plane_trapezoids(
+    cells: int,
+    grid: FloatArray,
+    columns: int,
+    tiles: int,
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    pool: FloatArray,
+    out: FloatArray,
+) -> int:
+    """A plane's material as trapezoids with vertical sides, rows (ua, ub, bottom a, bottom b, top a, top b).
+
+    Runs of full tiles in a column make one rectangle. Returns the number of rows, or -1 when ``out`` is too short.
+    """
+    n = 0
+    cuts = np.empty(0)
+    height = np.empty(0)
+    order = np.empty(0, dtype=np.int64)
+    for column in range(columns):
+        c0 = grid[0] + column * grid[2]
+        c1 = grid[0] + (column + 1) * grid[2]
+        tile = 0
+        while tile < tiles:
+            cell = cells + column * tiles + tile
+            floor = grid[1] + tile * grid[2]
+            if state[cell] == FULL:
+                while tile < tiles and state[cells + column * tiles + tile] == FULL:
+                    tile += 1
+                if n >= len(out):
+                    return -1
+                top = grid[1] + tile * grid[2]
+                out[n, 0], out[n, 1], out[n, 2], out[n, 3], out[n, 4], out[n, 5] = c0, c1, floor, floor, top, top
+                n += 1
+                continue
+            if state[cell] == PARTIAL:
+                begin, count = start[cell], size[cell]
+                if len(cuts) < 2 * count:
+                    cuts = np.empty(4 * count)
+                    height = np.empty(2 * count)
+                    order = np.empty(2 * count, dtype=np.int64)
+                for e in range(count):
+                    cuts[2 * e], cuts[2 * e + 1] = pool[begin + e, 0], pool[begin + e, 2]
+                cuts[: 2 * count].sort()
+                for c in range(2 * count - 1):
+                    ua, ub = cuts[c], cuts[c + 1]
+                    if ub <= ua:
+                        continue
+                    middle = 0.5 * (ua + ub)
+                    hit = 0
+                    for e in range(begin, begin + count):
+                        if pool[e, 0] <= middle < pool[e, 2]:
+                            v = _line(middle, pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3])
+                            place = hit
+                            while place > 0 and height[place - 1] > v:
+                                height[place] = height[place - 1]
+                                order[place] = order[place - 1]
+                                place -= 1
+                            height[place] = v
+                            order[place] = e
+                            hit += 1
+                    for t in range(hit - 1, -1, -2):
+                        if n >= len(out):
+                            return -1
+                        e = order[t]
+                        out[n, 0], out[n, 1] = ua, ub
+                        out[n, 2], out[n, 3] = floor, floor
+                        out[n, 4] = _line(ua, pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3])
+                        out[n, 5] = _line(ub, pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3])
+                        if t > 0:
+                            e = order[t - 1]
+                            out[n, 2] = _line(ua, pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3])
+                            out[n, 3] = _line(ub, pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3])
+                        n += 1
+            tile += 1
+    return n

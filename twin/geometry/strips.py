@@ -1,0 +1,38 @@
+"""Sections of a convex body by a run of parallel planes, each a strip lo(u) <= v <= hi(u)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Strips:
+    """One strip a plane; a plane that the body misses has no nodes.
+
+    Attributes:
+        first: index of the first plane.
+        offsets: shape (planes + 1,), where each plane's nodes begin.
+        nodes: shape (n, 3): u increasing on each plane, lo (convex in u), hi (concave in u), lo <= hi.
+    """
+
+    first: int
+    offsets: NDArray[np.int64]
+    nodes: FloatArray
+
+    @property
+    def planes(self) -> int:
+        """Number of planes, those without nodes included."""
+        return len(self.offsets) - 1
+
+    def outline(self, i: int) -> FloatArray | None:
+        """Polygon of the strip on plane ``first + i``, counter-clockwise, shape (n, 2), or None where there is none."""
+        nodes = self.nodes[self.offsets[i] : self.offsets[i + 1]]
+        if len(nodes) < 2:
+            return None
+        lower, upper = nodes[:, [0, 1]], nodes[::-1][:, [0, 2]]
+        return np.concatenate((lower, upper))

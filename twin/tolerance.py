@@ -1,0 +1,38 @@
+"""Every tolerance of the program in one value, each with its reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tolerance:
+    """Tolerances of geometry and physics; lengths scale with the slice pitch, so that scaled parts behave alike.
+
+    Attributes:
+        chord_mm: how far a polygon's chord may stand off the curve it stands for. Tools are enlarged by this much, so
+            that their polygons are circumscribed: a point of the tool's surface is never left in the material by it.
+        depth_mm: how far a point must lie inside a swept volume to count as removed; hides rounding on its surface.
+        gate: least n.f (cosine between edge normal and feed) that counts as front of the tool; hides rounding at 0.
+        chip: least uncut chip thickness, relative to the feed per tooth, that makes a chip and an edge force.
+        contact_mm3: material that a body must sweep before touching it is called a collision.
+        clearance_mm: how much thinner than drawn shank and holder are taken, so that a shank of the cutter's own
+            diameter may rub along the wall that the cutter made.
+    """
+
+    chord_mm: float
+    depth_mm: float
+    gate: float = 1e-6
+    chip: float = 1e-12
+    contact_mm3: float
+    clearance_mm: float
+
+    @classmethod
+    def for_pitch(cls, pitch_mm: float) -> Tolerance:
+        """The values used for slices at a pitch: 1 um chords at 0.1 mm."""
+        return cls(
+            chord_mm=0.01 * pitch_mm,
+            depth_mm=1e-6 * pitch_mm,
+            contact_mm3=pitch_mm**3,
+            clearance_mm=0.1 * pitch_mm,
+        )
