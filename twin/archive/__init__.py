@@ -1,1 +1,6 @@
-"""Runs in MCAP files; the only door to the mcap and protobuf libraries."""
+"""Runs in MCAP files (docs/archive-format.md); the only door to the mcap and protobuf libraries."""
+
+from twin.archive.export import export_forces, read_forces
+from twin.archive.reader import RunInfo, read_run, run_info
+
+__all__ = ["RunInfo", "export_forces", "read_forces", "read_run", "run_info"]

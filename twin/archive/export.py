@@ -1,0 +1,109 @@
+"""Forces out of an archive: as an Arrow table, as CSV, as Parquet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, closing, contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
+
+from twin.archive.force_table import force_schema, force_tables
+from twin.archive.partial import partial_path, reason
+from twin.archive.reader import read_run
+from twin.errors import ArchiveError
+from twin.record import ForceOn
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+
+def read_forces(path: str | PathLike[str], on: ForceOn = "tool") -> pa.Table:
+    """All force samples of a run.
+
+    Args:
+        on: the body that feels the force, ``"tool"`` or ``"workpiece"`` (opposite sign).
+
+    Returns:
+        columns t_s, spindle_angle_rad, fx_n, fy_n, fz_n, torque_nm, power_w, nc_line, tool (names say the unit).
+
+    Raises:
+        ArchiveError: see `twin.archive.read_run`; or an unknown ``on``.
+    """
+    import pyarrow as pa
+
+    _check_on(on)
+    return pa.concat_tables(force_tables(read_run(path), on))
+
+
+def export_forces(run: str | PathLike[str], out: str | PathLike[str], on: ForceOn = "tool", force: bool = False) -> int:
+    """Write all force samples of a run to a ``.csv`` or ``.parquet`` file, with flat memory.
+
+    Args:
+        on: see `read_forces`.
+        force: replace ``out`` when it is there.
+
+    Returns:
+        number of rows written.
+
+    Raises:
+        ArchiveError: unknown suffix or ``on``; ``out`` is there; the run cannot be read; ``out`` cannot be written.
+            Nothing stands under the name ``out`` then.
+    """
+    target = Path(out)
+    writer = _WRITERS.get(target.suffix.lower())
+    if writer is None:
+        raise ArchiveError(f"{target}: suffix {target.suffix!r} is not known, expected {' or '.join(_WRITERS)}")
+    _check_on(on)
+    if target.exists() and not force:
+        raise ArchiveError(f"{target}: is there already; replace it with --force")
+    with closing(read_run(run)) as records, _replacing(target) as partial:
+        tables = force_tables(records, on)
+        first = next(tables)
+        with writer(partial, force_schema(on)) as sink:
+            rows = _write(sink, first)
+            for table in tables:
+                rows += _write(sink, table)
+    return rows
+
+
+def _write(sink: Any, table: pa.Table) -> int:
+    sink.write_table(table)
+    return int(table.num_rows)
+
+
+def _check_on(on: str) -> None:
+    if on not in get_args(ForceOn):
+        raise ArchiveError(f"forces on {on!r} are not known, expected {' or '.join(map(repr, get_args(ForceOn)))}")
+
+
+@contextmanager
+def _replacing(target: Path) -> Iterator[Path]:
+    """A name to write to, which becomes the target when all went well and is removed when not."""
+    partial = partial_path(target)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        yield partial
+        partial.replace(target)
+    except OSError as error:
+        raise ArchiveError(f"{target}: cannot be written: {reason(error)}") from error
+    finally:
+        if not target.is_dir():
+            partial.unlink(missing_ok=True)
+
+
+def _csv(path: Path, schema: pa.Schema) -> AbstractContextManager[Any]:
+    from pyarrow import csv
+
+    writer: AbstractContextManager[Any] = csv.CSVWriter(path, schema)
+    return writer
+
+
+def _parquet(path: Path, schema: pa.Schema) -> AbstractContextManager[Any]:
+    from pyarrow import parquet
+
+    writer: AbstractContextManager[Any] = parquet.ParquetWriter(path, schema)
+    return writer
+
+
+_WRITERS: dict[str, Callable[[Path, Any], AbstractContextManager[Any]]] = {".csv": _csv, ".parquet": _parquet}

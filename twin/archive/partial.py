@@ -1,0 +1,107 @@
+"""A file that has its final name only when it is whole; until then it stands beside it under a name that says so."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from pathlib import Path
+
+from twin.errors import ArchiveError
+
+
+def partial_path(path: Path) -> Path:
+    """Name of a file while it is written: ``slot.partial.mcap`` for ``slot.mcap``, so that viewers open it too."""
+    return path.with_name(f"{path.stem}.partial{path.suffix}")
+
+
+def reason(error: OSError) -> str:
+    """What the system says, in lower case and without its number."""
+    text = error.strerror or str(error)
+    return text[:1].lower() + text[1:]
+
+
+class PartialFile:
+    """Writes bytes without a buffer; a piece is in the file whole or not at all.
+
+    Args:
+        path: the final name.
+        force: replace a file of that name, and what an earlier unfinished run left, instead of refusing.
+
+    Raises:
+        ArchiveError: a file is there and ``force`` is not, or none can be made.
+    """
+
+    def __init__(self, path: Path, *, force: bool = False) -> None:
+        self.path = path
+        self.partial = partial_path(path)
+        self._force = force
+        self._size = 0
+        self._refuse_existing()
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if force:
+                self.partial.unlink(missing_ok=True)
+            self._file: int | None = os.open(self.partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+        except FileExistsError:
+            raise ArchiveError(
+                f"{self.partial}: left by a run that did not finish, or of one that is running; "
+                "move it away, or replace it with --force"
+            ) from None
+        except OSError as error:
+            raise ArchiveError(f"{path}: cannot be written: {reason(error)}") from error
+
+    def write(self, data: bytes) -> None:
+        """Write all of the bytes through to the system.
+
+        Raises:
+            ArchiveError: not all could be written; the file is then closed and ends before them.
+        """
+        if self._file is None:
+            raise ArchiveError(f"{self.path}: is closed")
+        view = memoryview(data)
+        try:
+            while len(view):
+                view = view[os.write(self._file, view) :]
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                os.ftruncate(self._file, self._size)
+            self.abandon()
+            raise ArchiveError(
+                f"{self.path}: cannot be written: {reason(error)}; what was written so far is kept in {self.partial}"
+            ) from error
+        self._size += len(data)
+
+    def commit(self) -> None:
+        """Give the file its final name.
+
+        Raises:
+            ArchiveError: a file of that name has come meanwhile; the partial one stays.
+        """
+        self.abandon()
+        self._refuse_existing(f"; this run is kept in {self.partial}")
+        try:
+            self.partial.replace(self.path)
+        except OSError as error:
+            raise ArchiveError(
+                f"{self.path}: cannot be written: {reason(error)}; this run is kept in {self.partial}"
+            ) from error
+
+    def abandon(self) -> None:
+        """Close and keep what is there under its partial name."""
+        file, self._file = self._file, None
+        if file is not None:
+            os.close(file)
+
+    def discard(self) -> None:
+        """Close and remove."""
+        self.abandon()
+        self.partial.unlink(missing_ok=True)
+
+    @property
+    def closed(self) -> bool:
+        """Whether nothing more can be written."""
+        return self._file is None
+
+    def _refuse_existing(self, kept: str = "") -> None:
+        if not self._force and self.path.exists():
+            raise ArchiveError(f"{self.path}: is there already; replace it with --force{kept}")

@@ -1,0 +1,277 @@
+"""A run's file back into the records that made it, with flat memory."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mcap.opcode import Opcode
+from mcap.records import Attachment as AttachmentRecord
+from mcap.records import Channel, Metadata, MetadataIndex, Schema, Statistics
+from numpy.typing import NDArray
+
+from twin.archive import forces, messages, schemas
+from twin.archive import run_metadata as meta
+from twin.archive.chunk import MESSAGE_FIXED, MESSAGE_HEAD
+from twin.archive.frames import DAMAGE, HEAD, Frame, RunFile, stream
+from twin.errors import ArchiveError
+from twin.record import Attachment, Record, RunHeader, RunSummary, Step
+
+_CONVERTERS: dict[str, Callable[[Any], Record]] = {
+    schemas.NC_TOPIC: messages.to_nc,
+    schemas.COLLISION_TOPIC: messages.to_collision,
+}
+_FOR_VIEWERS_ONLY = (schemas.POSE_TOPIC, schemas.TOOL_SHAPE_TOPIC)
+
+
+def read_run(path: str | PathLike[str]) -> Iterator[Record]:
+    """The records of a run in the order in which they were written; arrays are read-only.
+
+    A file that ends early (a killed run, a copy cut short) gives what it holds in full: no step without all of its
+    samples, and no `RunSummary` when it did not come to that.
+
+    Raises:
+        ArchiveError: no run's file, damaged, or so short that not even its header is whole.
+    """
+    with RunFile(path) as file:
+        yield from _Decoder(file).records()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunInfo:
+    """What a run's file holds.
+
+    Attributes:
+        summary: None when the file ends before it.
+        counts: number of messages on each topic.
+        duration_s: machine time that the file covers.
+        complete: whether the program was replayed to its end.
+        intact: whether the file itself is whole; False for what a killed run left.
+        attachments: size in bytes of every attached file, by name.
+    """
+
+    path: Path
+    header: RunHeader
+    summary: RunSummary | None
+    counts: dict[str, int]
+    duration_s: float
+    complete: bool
+    intact: bool
+    attachments: dict[str, int]
+
+
+def run_info(path: str | PathLike[str]) -> RunInfo:
+    """Look into a run's file: at its index when it is whole, else at all of it.
+
+    Raises:
+        ArchiveError: as `read_run`.
+    """
+    with RunFile(path) as file:
+        decoder = _Decoder(file)
+        header = decoder.header()
+        footer = file.footer()
+        if footer is None or not footer.summary_start:
+            summary = _last_summary(decoder)
+            counts, end_ns = dict(decoder.counts), decoder.end_ns
+        else:
+            try:
+                summary, counts, end_ns = _from_index(file, footer.summary_start)
+            except DAMAGE:
+                raise file.damaged(footer.summary_start) from None
+        return RunInfo(
+            path=file.path,
+            header=header,
+            summary=summary,
+            counts=counts,
+            duration_s=summary.machine_time_s if summary else end_ns * 1e-9,
+            complete=bool(summary and summary.complete and footer),
+            intact=footer is not None,
+            attachments={a.name: len(a.data) for a in header.attachments},
+        )
+
+
+def _last_summary(decoder: _Decoder) -> RunSummary | None:
+    """Go through all records for their counts; the summary, if there is one."""
+    found = None
+    for record in decoder.records():
+        found = record if isinstance(record, RunSummary) else found
+    return found
+
+
+def _from_index(file: RunFile, start: int) -> tuple[RunSummary | None, dict[str, int], int]:
+    """Run summary, messages by topic, and last log time, from the summary section."""
+    topics: dict[int, str] = {}
+    statistics = summary = None
+    for frame in file.frames(start):
+        if frame.opcode == Opcode.CHANNEL:
+            channel = Channel.read(stream(frame.body))
+            topics[channel.id] = channel.topic
+        elif frame.opcode == Opcode.STATISTICS:
+            statistics = Statistics.read(stream(frame.body))
+        elif frame.opcode == Opcode.METADATA_INDEX:
+            index = MetadataIndex.read(stream(frame.body))
+            if index.name == meta.SUMMARY:
+                entry = Metadata.read(stream(next(file.frames(index.offset)).body))
+                summary = meta.to_summary(entry.metadata)
+    if statistics is None:
+        return summary, {}, 0
+    counts = {topics[c]: n for c, n in statistics.channel_message_counts.items()}
+    return summary, counts, statistics.message_end_time
+
+
+@dataclass(slots=True)
+class _PendingStep:
+    """A step whose samples are still coming."""
+
+    message: Any
+    missing: int
+    blocks: list[NDArray[np.void]] = field(default_factory=list)
+
+    def take(self, block: NDArray[np.void]) -> None:
+        self.blocks.append(block)
+        self.missing -= len(block)
+
+    def step(self) -> Step:
+        return messages.to_step(self.message, forces.to_samples(self.blocks))
+
+
+@dataclass(slots=True)
+class _Decoder:
+    """Turns the frames of one file into records."""
+
+    file: RunFile
+    counts: Counter[str] = field(default_factory=Counter)
+    end_ns: int = 0
+    _schemas: dict[int, Schema] = field(default_factory=dict)
+    _topics: dict[int, str] = field(default_factory=dict)
+    _classes: dict[int, Any] = field(default_factory=dict)
+    _layouts: dict[int, forces.ForceLayout] = field(default_factory=dict)
+    _files: list[Attachment] = field(default_factory=list)
+    _parameters: dict[str, str] = field(default_factory=dict)
+    _header: RunHeader | None = None
+    _pending: _PendingStep | None = None
+
+    def records(self) -> Iterator[Record]:
+        """All records of the file."""
+        self._files.clear()
+        self._header = None
+        for frame in self.file.frames():
+            if self._header is None and frame.opcode in (Opcode.CHUNK, Opcode.MESSAGE):
+                raise self.file.damaged(frame.offset)
+            try:
+                yield from self._frame(frame)
+            except DAMAGE:
+                raise self.file.damaged(frame.offset) from None
+            if frame.opcode == Opcode.DATA_END:
+                break
+        if self._header is None:
+            raise self._no_header()
+
+    def header(self) -> RunHeader:
+        """The run's header alone."""
+        for record in self.records():
+            if isinstance(record, RunHeader):
+                return record
+        raise self._no_header()
+
+    def _no_header(self) -> ArchiveError:
+        return ArchiveError(f"{self.file.path}: ends before the run's header is whole (byte {self.file.size})")
+
+    def _frame(self, frame: Frame) -> Iterator[Record]:
+        if frame.opcode == Opcode.CHUNK:
+            yield from self._chunk(self.file.unpack(frame))
+        elif frame.opcode == Opcode.MESSAGE:
+            yield from self._chunk(HEAD.pack(frame.opcode, len(frame.body)) + frame.body)
+        elif frame.opcode == Opcode.ATTACHMENT:
+            found = AttachmentRecord.read(stream(frame.body))
+            self._files.append(Attachment(name=found.name, media_type=found.media_type, data=found.data))
+        elif frame.opcode == Opcode.METADATA:
+            yield from self._metadata(Metadata.read(stream(frame.body)))
+        elif frame.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            self._register(frame.opcode, frame.body)
+
+    def _metadata(self, entry: Metadata) -> Iterator[Record]:
+        if entry.name == meta.PARAMETERS:
+            self._parameters = entry.metadata
+        elif entry.name == meta.HEADER:
+            self._header = meta.to_header(entry.metadata, self._parameters, self._files)
+            yield self._header
+        elif entry.name == meta.SUMMARY:
+            yield meta.to_summary(entry.metadata)
+
+    def _register(self, opcode: int, body: bytes) -> None:
+        """Keep a schema or a channel; a schema that is not this program's own is read by what it says itself."""
+        if opcode == Opcode.SCHEMA:
+            schema = Schema.read(stream(body))
+            self._schemas[schema.id] = schema
+            return
+        channel = Channel.read(stream(body))
+        schema = self._schemas[channel.schema_id]
+        wanted = schemas.message_on(channel.topic)
+        if schema.name != wanted or channel.topic in _FOR_VIEWERS_ONLY:
+            self._topics[channel.id] = channel.topic
+            return
+        own = schema.data == schemas.descriptor_set(wanted)
+        self._topics[channel.id] = channel.topic
+        self._classes[channel.id] = (
+            schemas.message_class(wanted) if own else schemas.embedded_class(schema.data, wanted)
+        )
+        if channel.topic == schemas.FORCE_TOPIC and own:
+            self._layouts[channel.id] = forces.ForceLayout.of(channel.id)
+
+    def _chunk(self, data: bytes) -> Iterator[Record]:
+        """Records inside a chunk; a step's force messages are taken as one array."""
+        at = 0
+        while at < len(data):
+            opcode, length = data[at], int.from_bytes(data[at + 1 : at + 9], "little")
+            if opcode == Opcode.MESSAGE:
+                _, _, channel, _, time_ns, _ = MESSAGE_HEAD.unpack_from(data, at)
+                block = self._force_block(channel, data, at)
+                if len(block):
+                    self._count(channel, len(block), int(block["log_time"].max()))
+                    yield from self._take(block)
+                    at += block.nbytes
+                    continue
+                self._count(channel, 1, time_ns)
+                yield from self._message(channel, data[at + 9 + MESSAGE_FIXED : at + 9 + length])
+            elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+                self._register(opcode, data[at + 9 : at + 9 + length])
+            at += 9 + length
+
+    def _count(self, channel: int, n: int, time_ns: int) -> None:
+        self.counts[self._topics[channel]] += n
+        self.end_ns = max(self.end_ns, time_ns)
+
+    def _force_block(self, channel: int, data: bytes, at: int) -> NDArray[np.void]:
+        """The force messages of the step at hand that stand here, as far as they have this program's layout."""
+        layout = self._layouts.get(channel)
+        if layout is None or self._pending is None:
+            return np.empty(0, forces.RECORD)
+        return layout.match(data, at, self._pending.missing)
+
+    def _message(self, channel: int, payload: bytes) -> Iterator[Record]:
+        """One message of any topic but those for viewers only."""
+        if channel not in self._classes:
+            return
+        topic, message = self._topics[channel], self._classes[channel].FromString(payload)
+        if topic == schemas.FORCE_TOPIC:
+            yield from self._take(forces.row(message))
+        elif topic == schemas.ENGAGEMENT_TOPIC:
+            self._pending = _PendingStep(message, message.samples)
+            yield from self._take(np.empty(0, forces.RECORD))
+        else:
+            yield _CONVERTERS.get(topic, messages.to_patch)(message)
+
+    def _take(self, block: NDArray[np.void]) -> Iterator[Record]:
+        """Give force messages to the step at hand; the step, when it has all of them."""
+        if self._pending is None:
+            return
+        self._pending.take(block)
+        if self._pending.missing <= 0:
+            step, self._pending = self._pending.step(), None
+            yield step

@@ -1,0 +1,61 @@
+"""A run into an MCAP file (docs/archive-format.md)."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from twin.archive.partial import PartialFile
+from twin.archive.run_writer import RunWriter
+from twin.record import Record
+
+
+class McapSink:
+    """Writes ``path``, under the name ``*.partial.mcap`` until `close`: a killed run leaves that, readable.
+
+    When writing fails, the records that were complete stay under the partial name, and `close` does nothing more. A
+    run that ends before its header leaves no file.
+
+    Args:
+        path: the run's file; missing folders above it are made.
+        force: replace a file that is there instead of refusing.
+
+    Raises:
+        ArchiveError: the file is there already, or cannot be made.
+    """
+
+    def __init__(self, path: str | PathLike[str], *, force: bool = False) -> None:
+        self._file = PartialFile(Path(path), force=force)
+        self._run = RunWriter(self._file.write)
+
+    def write(self, record: Record) -> None:
+        """Take one record.
+
+        Raises:
+            ArchiveError: the disk is full or the like; or the record does not belong here (see `RunWriter.write`).
+        """
+        self._run.write(record)
+
+    def close(self) -> None:
+        """Finish the file and give it its final name.
+
+        Raises:
+            ArchiveError: the end could not be written; the records are kept under the partial name.
+        """
+        if self._file.closed:
+            return
+        if not self._run.started:
+            self._file.discard()
+            return
+        self._run.finish()
+        self._file.commit()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
