@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, closing, contextmanager
+from contextlib import AbstractContextManager, contextmanager
+from itertools import chain
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
@@ -57,19 +58,14 @@ def export_forces(run: str | PathLike[str], out: str | PathLike[str], on: ForceO
     _check_on(on)
     if target.exists() and not force:
         raise ArchiveError(f"{target}: is there already; replace it with --force")
-    with closing(read_run(run)) as records, _replacing(target) as partial:
-        tables = force_tables(records, on)
-        first = next(tables)
-        with writer(partial, force_schema(on)) as sink:
-            rows = _write(sink, first)
-            for table in tables:
-                rows += _write(sink, table)
+    tables = force_tables(read_run(run), on)
+    first = next(tables)
+    rows = 0
+    with _replacing(target) as partial, writer(partial, force_schema(on)) as sink:
+        for table in chain([first], tables):
+            sink.write_table(table)
+            rows += table.num_rows
     return rows
-
-
-def _write(sink: Any, table: pa.Table) -> int:
-    sink.write_table(table)
-    return int(table.num_rows)
 
 
 def _check_on(on: str) -> None:
@@ -92,18 +88,22 @@ def _replacing(target: Path) -> Iterator[Path]:
             partial.unlink(missing_ok=True)
 
 
-def _csv(path: Path, schema: pa.Schema) -> AbstractContextManager[Any]:
+@contextmanager
+def _csv(path: Path, schema: pa.Schema) -> Iterator[Any]:
     from pyarrow import csv
 
-    writer: AbstractContextManager[Any] = csv.CSVWriter(path, schema)
-    return writer
+    with path.open("wb") as file:
+        file.write(f"{','.join(schema.names)}\n".encode())
+        with csv.CSVWriter(file, schema, write_options=csv.WriteOptions(include_header=False)) as sink:
+            yield sink
 
 
-def _parquet(path: Path, schema: pa.Schema) -> AbstractContextManager[Any]:
+@contextmanager
+def _parquet(path: Path, schema: pa.Schema) -> Iterator[Any]:
     from pyarrow import parquet
 
-    writer: AbstractContextManager[Any] = parquet.ParquetWriter(path, schema)
-    return writer
+    with parquet.ParquetWriter(path, schema) as sink:
+        yield sink
 
 
 _WRITERS: dict[str, Callable[[Path, Any], AbstractContextManager[Any]]] = {".csv": _csv, ".parquet": _parquet}

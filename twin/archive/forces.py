@@ -33,12 +33,16 @@ def _record_type() -> np.dtype[np.void]:
 
 
 RECORD: np.dtype[np.void] = _record_type()
+#: The doubles of a record follow one another, each behind its tag: t_s, angle, fx, fy, fz, torque, power.
+_DOUBLES = sum(kind == "double" for _, _, kind in _FIELDS)
+_DOUBLE_STRIDE = 9
+_FIRST_DOUBLE = RECORD.itemsize - len(_FIELDS) - 8 * _DOUBLES - 4 * (len(_FIELDS) - _DOUBLES) + 1
 _CONSTANT = ("opcode", "length", "channel", *(f"tag_{name}" for name, _, _ in _FIELDS))
 
 
-def to_ns(t_s: FloatArray | float) -> NDArray[np.uint64]:
+def to_ns(t_s: float) -> int:
     """Machine time as the whole nanoseconds of a log time."""
-    return np.rint(np.multiply(t_s, 1e9)).astype(np.uint64)
+    return round(t_s * 1e9)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +86,12 @@ class ForceLayout:
         """
         samples = [step.samples for step in steps]
         counts = [len(s.t_s) for s in samples]
-        records = np.full(sum(counts), self.template)
+        records = np.frombuffer(bytearray(self.template.tobytes() * sum(counts)), RECORD)
         if not len(records):
             return records
         for name, values in _columns(samples).items():
             records[name] = values
-        records["log_time"] = records["publish_time"] = to_ns(records["t_s"])
+        records["log_time"] = records["publish_time"] = np.rint(records["t_s"] * 1e9)
         records["sequence"] = np.arange(sequence, sequence + len(records), dtype=np.uint64).astype(np.uint32)
         records["nc_line"] = np.repeat(np.array([s.nc_line for s in steps], np.uint32), counts)
         records["tool"] = np.repeat(np.array([s.tool for s in steps], np.uint32), counts)
@@ -134,20 +138,10 @@ def row(message: Any) -> NDArray[np.void]:
 
 def to_samples(blocks: Sequence[NDArray[np.void]]) -> ForceSamples:
     """Force records as the samples of one step; the arrays are copies and read-only."""
-
-    def column(name: str) -> FloatArray:
-        return _read_only(np.concatenate([b[name] for b in blocks]) if blocks else np.empty(0))
-
-    force = np.stack([column("fx_n"), column("fy_n"), column("fz_n")], axis=1)
-    return ForceSamples(
-        t_s=column("t_s"),
-        spindle_angle_rad=column("spindle_angle_rad"),
-        force_n=_read_only(force),
-        torque_nm=column("torque_nm"),
-        power_w=column("power_w"),
-    )
-
-
-def _read_only(array: FloatArray) -> FloatArray:
-    array.flags.writeable = False
-    return array
+    block = blocks[0] if len(blocks) == 1 else np.concatenate([np.empty(0, RECORD), *blocks])
+    strided = np.ndarray((len(block), _DOUBLES), "<f8", block.data, _FIRST_DOUBLE, (RECORD.itemsize, _DOUBLE_STRIDE))
+    columns = np.ascontiguousarray(strided.T, np.float64)
+    force = np.ascontiguousarray(columns[2:5].T)
+    columns.flags.writeable = force.flags.writeable = False
+    t_s, angle, _, _, _, torque, power = columns
+    return ForceSamples(t_s=t_s, spindle_angle_rad=angle, force_n=force, torque_nm=torque, power_w=power)

@@ -17,12 +17,14 @@ from google.protobuf.message import DecodeError
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
+from mcap.records import Attachment as AttachmentRecord
 from mcap.records import Chunk, Footer, Header
 
 from twin.archive import schemas
 from twin.archive.container import MAGIC
 from twin.archive.partial import partial_path, reason
 from twin.errors import ArchiveError
+from twin.record import Attachment
 
 #: Opcode and length before every record.
 HEAD = struct.Struct("<BQ")
@@ -100,6 +102,17 @@ class RunFile:
             raise self.damaged(frame.offset)
         return data
 
+    def attachment(self, frame: Frame) -> Attachment:
+        """An attached file.
+
+        Raises:
+            ArchiveError: damaged.
+        """
+        if zlib.crc32(frame.body[:-4]) != int.from_bytes(frame.body[-4:], "little"):
+            raise self.damaged(frame.offset)
+        found = AttachmentRecord.read(stream(frame.body))
+        return Attachment(name=found.name, media_type=found.media_type, data=found.data)
+
     def damaged(self, offset: int) -> ArchiveError:
         """The error for a record that contradicts itself."""
         return ArchiveError(f"{self.path}: damaged at byte {offset}")
@@ -138,6 +151,8 @@ class RunFile:
             return chunk.data
         if chunk.compression != "zstd":
             raise ArchiveError(f"{self.path}: packed by {chunk.compression!r}, expected 'zstd' or nothing")
+        if zstandard.frame_content_size(chunk.data) not in (-1, chunk.uncompressed_size):
+            raise self.damaged(offset)
         try:
             return zstandard.ZstdDecompressor().decompress(chunk.data, max_output_size=chunk.uncompressed_size)
         except zstandard.ZstdError:

@@ -210,7 +210,7 @@ def _triples(columns: list[NDArray[np.float32]]) -> NDArray[np.float32]:
 
 def _timestamp(t_s: float) -> dict[str, int]:
     """Machine time as a protobuf timestamp."""
-    seconds, nanos = divmod(int(to_ns(t_s)), 1_000_000_000)
+    seconds, nanos = divmod(to_ns(t_s), 1_000_000_000)
     return {"seconds": seconds, "nanos": nanos}
 
 

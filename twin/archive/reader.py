@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from mcap.opcode import Opcode
-from mcap.records import Attachment as AttachmentRecord
 from mcap.records import Channel, Metadata, MetadataIndex, Schema, Statistics
 from numpy.typing import NDArray
 
@@ -188,8 +187,7 @@ class _Decoder:
         elif frame.opcode == Opcode.MESSAGE:
             yield from self._chunk(HEAD.pack(frame.opcode, len(frame.body)) + frame.body)
         elif frame.opcode == Opcode.ATTACHMENT:
-            found = AttachmentRecord.read(stream(frame.body))
-            self._files.append(Attachment(name=found.name, media_type=found.media_type, data=found.data))
+            self._files.append(self.file.attachment(frame))
         elif frame.opcode == Opcode.METADATA:
             yield from self._metadata(Metadata.read(stream(frame.body)))
         elif frame.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):

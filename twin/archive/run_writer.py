@@ -114,9 +114,9 @@ class RunWriter:
         """Where the tool stands after the last step."""
         if self._last is not None:
             end_s = self._last.t_s + self._last.duration_s
-            file.add_message(schemas.POSE_TOPIC, int(to_ns(end_s)), messages.pose(end_s, self._last.end_mm))
+            file.add_message(schemas.POSE_TOPIC, to_ns(end_s), messages.pose(end_s, self._last.end_mm))
             self._last = None
 
 
 def _ns(record: Step | NcEvent | Collision | WorkpiecePatch) -> int:
-    return int(to_ns(record.t_s))
+    return to_ns(record.t_s)
