@@ -61,9 +61,9 @@ class CellFamily:
 
     def ensure(self, first: int, last: int) -> None:
         """Build the planes ``first`` to ``last - 1``, as far as they exist, that are not built yet."""
-        for k in range(max(0, first), min(last, len(self.base))):
-            if self.base[k] < 0:
-                self._build(k)
+        first = max(0, first)
+        for k in np.flatnonzero(self.base[first:last] < 0) if last > first else ():
+            self._build(first + int(k))
 
     def _build(self, k: int) -> None:
         cells = self.columns * self.tiles

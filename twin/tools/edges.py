@@ -28,8 +28,8 @@ class CuttingEdges:
         lag_rad: shape (n,), helix lag z tan(helix) / R of constant lead (R the nominal radius).
         pitch_rad: shape (teeth,), angle of each tooth behind tooth 0, the first 0, increasing below 2 pi.
         runout_mm, runout_rad: offset of the cutter axis from the spindle axis, and its direction measured from the tip
-            of tooth 0 in the sense against rotation, so that tooth m's element lies ``runout cos(runout_rad - pitch -
-            lag)`` farther out.
+            of tooth 0 in the sense of rotation, so that an element lies ``runout cos(runout_rad + pitch + lag)`` mm
+            farther out.
     """
 
     z_mm: FloatArray
@@ -100,7 +100,7 @@ def cutting_edges(
         [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(s_levels[:-1], s_levels[1:], pieces, strict=True)]
         + [s_levels[-1:]]
     )
-    z = _height(shape, 0.5 * (bounds[:-1] + bounds[1:]))
+    z = arc_position(shape, 0.5 * (bounds[:-1] + bounds[1:]))
     even = tuple(360.0 / teeth for _ in range(teeth))
     return CuttingEdges(
         z_mm=frozen(z, "z_mm", (None,)),
@@ -139,8 +139,8 @@ def _arc_length(shape: ToolShape, z: FloatArray) -> FloatArray:
     return np.asarray(np.where(z < shape.arc_height_mm, on_arc, at_end + wall))
 
 
-def _height(shape: ToolShape, s: FloatArray) -> FloatArray:
-    """Inverse of `_arc_length`."""
+def arc_position(shape: ToolShape, s: FloatArray) -> FloatArray:
+    """Height above the tip of positions along the meridian, measured from its lowest edge point."""
     end = shape.corner_mm * (0.5 * math.pi - shape.taper_rad)
     arc = shape.corner_mm * (1.0 - np.cos(s / shape.corner_mm)) if shape.corner_mm > 0.0 else np.zeros_like(s)
     wall = shape.arc_height_mm + (s - end) * math.cos(shape.taper_rad)

@@ -1,0 +1,93 @@
+"""NC events to motion in the workpiece frame. Machine coordinates, gauge points and mm/min end here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+
+from gcode.events import (
+    ArcMotion,
+    Dwell,
+    Event,
+    LinearMotion,
+    MotionState,
+    Point,
+)
+from twin.arrays import FloatArray
+from twin.motion.path import Arc, Move, path_length_mm
+
+
+def moves_from_nc(
+    events: Iterable[Event],
+    *,
+    origin_mm: FloatArray,
+    tool_length_mm: Mapping[int, float],
+    rapid_mm_min: float,
+) -> Iterator[Move | Event]:
+    """Turn motions and dwells into moves and pass all other events on.
+
+    The tool tip stands at the controlled point plus the active length offset less the tool's own length: with G43 and
+    the right offset that is the controlled point itself, without it the tip is lower by the tool's length, as on the
+    machine.
+
+    Args:
+        origin_mm: origin of the workpiece frame in machine coordinates, shape (3,).
+        tool_length_mm: gauge length of each tool by number; tools that are missing count as 0.
+        rapid_mm_min: speed of positioning along the path.
+    """
+    last: FloatArray | None = None
+    state = MotionState()
+    for event in events:
+        if isinstance(event, LinearMotion | ArcMotion):
+            move = _move(event, origin_mm, tool_length_mm, rapid_mm_min)
+            last, state = move.end_mm, event.state
+            yield move
+        elif isinstance(event, Dwell):
+            here = last if last is not None else np.zeros(3)
+            yield Move(
+                start_mm=here,
+                end_mm=here,
+                duration_s=event.seconds,
+                feed_mm_min=0.0,
+                spindle_rpm=_signed_rpm(event.state),
+                tool=state.tool if last is not None else event.state.tool,
+                rapid=False,
+                nc_line=event.place.line,
+            )
+        else:
+            yield event
+
+
+def _signed_rpm(state: MotionState) -> float:
+    return state.spindle_rpm * state.spindle_direction
+
+
+def _move(
+    event: LinearMotion | ArcMotion, origin: FloatArray, lengths: Mapping[int, float], rapid_mm_min: float
+) -> Move:
+    state = event.state
+    lift = np.array([0.0, 0.0, state.length_offset_mm - lengths.get(state.tool, 0.0)]) - origin
+
+    def tip(point: Point) -> FloatArray:
+        return np.array(point) + lift
+
+    arc = None
+    rapid = False
+    if isinstance(event, ArcMotion):
+        arc = Arc(centre_mm=tip(event.centre_mm), plane=event.plane, sweep_rad=event.sweep_rad)
+    else:
+        rapid = event.rapid
+    start, end = tip(event.start_mm), tip(event.end_mm)
+    feed = rapid_mm_min if rapid else event.feed_mm_min
+    return Move(
+        start_mm=start,
+        end_mm=end,
+        arc=arc,
+        duration_s=path_length_mm(start, end, arc) / feed * 60.0,
+        feed_mm_min=feed,
+        spindle_rpm=_signed_rpm(state),
+        tool=state.tool,
+        rapid=rapid,
+        nc_line=event.place.line,
+    )

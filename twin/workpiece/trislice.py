@@ -1,0 +1,216 @@
+"""The tri-slice workpiece: slices in three directions that sweeps are subtracted from.
+
+Two stores implement one interface (`twin.workpiece.store.SliceStore` plus `cut`): `CellSlices`, the fast one, and
+`PolygonSlices`, a plain pyclipper reference that reads like the tri-slice paper and serves as the tests' oracle.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+from twin.geometry import clip, kernels
+from twin.geometry.cells import CELL_PITCHES, CellFamily
+from twin.geometry.region import Region
+from twin.geometry.strips import Strips
+from twin.workpiece.stock import SliceSet
+from twin.workpiece.store import PLANE_AXES
+
+
+class TriSlices(ABC):
+    """What both stores share: the planes, areas and volumes."""
+
+    def __init__(self, slices: SliceSet) -> None:
+        self.slices = slices
+
+    @property
+    def low_mm(self) -> FloatArray:
+        """Lower corner of the stock's box, shape (3,)."""
+        return self.slices.low_mm
+
+    @property
+    def high_mm(self) -> FloatArray:
+        """Upper corner of the stock's box, shape (3,)."""
+        return self.slices.high_mm
+
+    @property
+    def pitch_mm(self) -> FloatArray:
+        """Distance of the planes along x, y, z, shape (3,)."""
+        return self.slices.pitch_mm
+
+    def count(self, axis: int) -> int:
+        """Number of planes of a family."""
+        return len(self.slices.regions[axis])
+
+    @abstractmethod
+    def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
+        """Subtract strips from a family's planes; returns the area taken from each plane of the strips.
+
+        Args:
+            apply: False measures only.
+        """
+
+    @abstractmethod
+    def areas_mm2(self, axis: int) -> FloatArray:
+        """Areas of material on all planes of a family."""
+
+    @abstractmethod
+    def region(self, axis: int, k: int) -> Region:
+        """Material on one plane as rings: outer ones counter-clockwise in (u, v), holes clockwise."""
+
+    @abstractmethod
+    def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
+        """For each point count the families whose nearest plane has material there, stopping at ``enough``.
+
+        Args:
+            points_mm: shape (n, 3).
+            enough: 1 where a single family decides, 2 for a majority of the three.
+            votes: shape (n,), starts at 0; at least ``enough`` on return where the point is in material.
+        """
+
+    def area_mm2(self, axis: int, k: int) -> float:
+        """Area of material on one plane."""
+        return float(self.areas_mm2(axis)[k])
+
+    def volume_mm3(self, axis: int) -> float:
+        """Volume by the midpoint rule over one family's planes."""
+        return float(np.sum(self.areas_mm2(axis)) * self.pitch_mm[axis])
+
+    def contains(self, points_mm: FloatArray, axis: int) -> NDArray[np.bool_]:
+        """Whether points (n, 3) lie in material on the nearest plane of a family; False more than half a pitch off."""
+        votes = np.zeros(len(points_mm), dtype=np.int8)
+        self._vote(np.ascontiguousarray(points_mm), axis, 0, 0, votes)
+        return votes > 0
+
+    @abstractmethod
+    def _vote(
+        self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]
+    ) -> None:
+        """Add a family's votes for points whose votes so far lie in [least, most]."""
+
+
+class CellSlices(TriSlices):
+    """The fast store: column cells, see `twin.geometry.kernels`."""
+
+    def __init__(self, slices: SliceSet) -> None:
+        super().__init__(slices)
+        self._families = []
+        for axis, (u, v) in enumerate(PLANE_AXES):
+            low, high = slices.low_mm, slices.high_mm
+            cell = CELL_PITCHES * float(max(slices.pitch_mm[u], slices.pitch_mm[v]))
+            corner = (float(low[u]), float(low[v])), (float(high[u]), float(high[v]))
+            self._families.append(CellFamily(slices.regions[axis], *corner, cell))
+
+    def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
+        """See `TriSlices.cut`."""
+        return self._families[axis].cut(strips, apply=apply)
+
+    def areas_mm2(self, axis: int) -> FloatArray:
+        """See `TriSlices.areas_mm2`."""
+        return self._families[axis].area_mm2
+
+    def region(self, axis: int, k: int) -> Region:
+        """See `TriSlices.region`."""
+        return self._families[axis].region(k)
+
+    def crossings(self, axis: int, k: int, u_mm: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+        """See `SliceStore.crossings`."""
+        return self._families[axis].crossings(k, u_mm)
+
+    def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
+        """Build the planes inside a box, so that points in it can be asked for; planes not built hold nothing."""
+        for axis, family in enumerate(self._families):
+            pitch = self.pitch_mm[axis]
+            first = int(np.floor((low_mm[axis] - self.low_mm[axis]) / pitch))
+            last = int(np.floor((high_mm[axis] - self.low_mm[axis]) / pitch))
+            family.ensure(first, last + 1)
+
+    def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
+        """See `TriSlices.count_votes`; at most as many families are asked as it takes to decide."""
+        self.prepare(points_mm.min(axis=0), points_mm.max(axis=0))
+        for asked, axis in enumerate((0, 1, 2)):
+            self._vote(points_mm, axis, enough - (3 - asked), enough - 1, votes)
+
+    def _vote(
+        self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]
+    ) -> None:
+        family = self._families[axis]
+        kernels.contains(
+            points_mm,
+            axis,
+            *PLANE_AXES[axis],
+            self.low_mm[axis],
+            self.pitch_mm[axis],
+            family.grid,
+            family.columns,
+            family.tiles,
+            *(family.base, family.state, family.start, family.size, family.pool),
+            votes,
+            least,
+            most,
+        )
+
+
+class PolygonSlices(TriSlices):
+    """The reference store: pyclipper polygons, cut whole, one slice at a time (the tri-slice paper, section 3.3)."""
+
+    def __init__(self, slices: SliceSet) -> None:
+        super().__init__(slices)
+        self._paths = [[clip.to_paths(r.rings) for r in family] for family in slices.regions]
+        self._areas = [np.array([clip.area_mm2(p) for p in family]) for family in self._paths]
+
+    def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
+        """See `TriSlices.cut`."""
+        removed = np.zeros(strips.planes)
+        for i in range(strips.planes):
+            outline = strips.outline(i)
+            if outline is None:
+                continue
+            k = strips.first + i
+            left = clip.difference(self._paths[axis][k], clip.to_paths([outline]))
+            area = clip.area_mm2(left)
+            removed[i] = self._areas[axis][k] - area
+            if apply:
+                self._paths[axis][k] = left
+                self._areas[axis][k] = area
+        return removed
+
+    def areas_mm2(self, axis: int) -> FloatArray:
+        """See `TriSlices.areas_mm2`."""
+        return self._areas[axis]
+
+    def region(self, axis: int, k: int) -> Region:
+        """See `TriSlices.region`."""
+        return clip.to_region(self._paths[axis][k])
+
+    def crossings(self, axis: int, k: int, u_mm: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+        """See `SliceStore.crossings`: every line against every ring edge, half-open in u."""
+        rings = [np.array(p) / clip.UNITS_PER_MM for p in self._paths[axis][k]]
+        hits: list[FloatArray] = []
+        for u in u_mm:
+            values: list[float] = []
+            for a in rings:
+                b = np.roll(a, -1, axis=0)
+                crossed = (a[:, 0] <= u) != (b[:, 0] <= u)
+                p, q = a[crossed], b[crossed]
+                values.extend(p[:, 1] + (q[:, 1] - p[:, 1]) * (u - p[:, 0]) / (q[:, 0] - p[:, 0]))
+            hits.append(np.sort(np.array(values)))
+        offsets = np.concatenate(([0], np.cumsum([len(h) for h in hits])))
+        return offsets.astype(np.int64), np.concatenate(hits) if hits else np.zeros(0)
+
+    def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
+        """See `TriSlices.count_votes`."""
+        for axis in range(3):
+            self._vote(points_mm, axis, 0, enough - 1, votes)
+
+    def _vote(
+        self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]
+    ) -> None:
+        planes = np.floor((points_mm[:, axis] - self.low_mm[axis]) / self.pitch_mm[axis]).astype(int)
+        for i, (point, k) in enumerate(zip(points_mm, planes, strict=True)):
+            if least <= votes[i] <= most and 0 <= k < self.count(axis):
+                u, v = (float(point[a]) for a in PLANE_AXES[axis])
+                votes[i] += clip.inside(self._paths[axis][k], u, v)
