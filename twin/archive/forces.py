@@ -138,10 +138,14 @@ def row(message: Any) -> NDArray[np.void]:
 
 def to_samples(blocks: Sequence[NDArray[np.void]]) -> ForceSamples:
     """Force records as the samples of one step; the arrays are copies and read-only."""
-    block = blocks[0] if len(blocks) == 1 else np.concatenate([np.empty(0, RECORD), *blocks])
-    strided = np.ndarray((len(block), _DOUBLES), "<f8", block.data, _FIRST_DOUBLE, (RECORD.itemsize, _DOUBLE_STRIDE))
-    columns = np.ascontiguousarray(strided.T, np.float64)
+    columns = np.concatenate([np.empty((_DOUBLES, 0)), *map(_doubles, blocks)], axis=1)
     force = np.ascontiguousarray(columns[2:5].T)
     columns.flags.writeable = force.flags.writeable = False
     t_s, angle, _, _, _, torque, power = columns
     return ForceSamples(t_s=t_s, spindle_angle_rad=angle, force_n=force, torque_nm=torque, power_w=power)
+
+
+def _doubles(block: NDArray[np.void]) -> NDArray[np.float64]:
+    """View of the doubles of n > 0 records, shape (`_DOUBLES`, n)."""
+    strides = (_DOUBLE_STRIDE, RECORD.itemsize)
+    return np.ndarray((_DOUBLES, len(block)), "<f8", block.data, _FIRST_DOUBLE, strides)

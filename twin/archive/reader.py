@@ -132,7 +132,8 @@ class _PendingStep:
     blocks: list[NDArray[np.void]] = field(default_factory=list)
 
     def take(self, block: NDArray[np.void]) -> None:
-        self.blocks.append(block)
+        if len(block):
+            self.blocks.append(block)
         self.missing -= len(block)
 
     def step(self) -> Step:
