@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import chain
 from os import PathLike
 from pathlib import Path
@@ -84,8 +84,8 @@ def _replacing(target: Path) -> Iterator[Path]:
     except OSError as error:
         raise ArchiveError(f"{target}: cannot be written: {reason(error)}") from error
     finally:
-        if not target.is_dir():
-            partial.unlink(missing_ok=True)
+        with suppress(OSError):
+            partial.unlink()
 
 
 @contextmanager

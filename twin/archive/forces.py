@@ -37,6 +37,8 @@ RECORD: np.dtype[np.void] = _record_type()
 _DOUBLES = sum(kind == "double" for _, _, kind in _FIELDS)
 _DOUBLE_STRIDE = 9
 _FIRST_DOUBLE = RECORD.itemsize - len(_FIELDS) - 8 * _DOUBLES - 4 * (len(_FIELDS) - _DOUBLES) + 1
+#: No force messages.
+NO_RECORDS: NDArray[np.void] = np.empty(0, RECORD)
 _CONSTANT = ("opcode", "length", "channel", *(f"tag_{name}" for name, _, _ in _FIELDS))
 
 
@@ -138,7 +140,7 @@ def row(message: Any) -> NDArray[np.void]:
 
 def to_samples(blocks: Sequence[NDArray[np.void]]) -> ForceSamples:
     """Force records as the samples of one step; the arrays are copies and read-only."""
-    columns = np.concatenate([np.empty((_DOUBLES, 0)), *map(_doubles, blocks)], axis=1)
+    columns = np.concatenate([_doubles(b) for b in blocks] or [np.empty((_DOUBLES, 0))], axis=1)
     force = np.ascontiguousarray(columns[2:5].T)
     columns.flags.writeable = force.flags.writeable = False
     t_s, angle, _, _, _, torque, power = columns

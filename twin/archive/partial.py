@@ -41,12 +41,7 @@ class PartialFile:
             path.parent.mkdir(parents=True, exist_ok=True)
             if force:
                 self.partial.unlink(missing_ok=True)
-            self._file: int | None = os.open(self.partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
-        except FileExistsError:
-            raise ArchiveError(
-                f"{self.partial}: left by a run that did not finish, or of one that is running; "
-                "move it away, or replace it with --force"
-            ) from None
+            self._file = self._open()
         except OSError as error:
             raise ArchiveError(f"{path}: cannot be written: {reason(error)}") from error
 
@@ -57,7 +52,7 @@ class PartialFile:
             ArchiveError: not all could be written; the file is then closed and ends before them.
         """
         if self._file is None:
-            raise ArchiveError(f"{self.path}: is closed")
+            raise self.is_closed()
         view = memoryview(data)
         try:
             while len(view):
@@ -97,10 +92,23 @@ class PartialFile:
         self.abandon()
         self.partial.unlink(missing_ok=True)
 
+    def is_closed(self) -> ArchiveError:
+        """The error for whoever writes to a closed file."""
+        return ArchiveError(f"{self.path}: is closed")
+
     @property
     def closed(self) -> bool:
         """Whether nothing more can be written."""
         return self._file is None
+
+    def _open(self) -> int | None:
+        try:
+            return os.open(self.partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+        except FileExistsError:
+            raise ArchiveError(
+                f"{self.partial}: left by a run that did not finish, or of one that is running; "
+                "move it away, or replace it with --force"
+            ) from None
 
     def _refuse_existing(self, kept: str = "") -> None:
         if not self._force and self.path.exists():

@@ -6,12 +6,11 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from mcap.opcode import Opcode
-from mcap.records import Channel, Metadata, MetadataIndex, Schema, Statistics
+from mcap.records import Channel, Metadata, Schema
 from numpy.typing import NDArray
 
 from twin.archive import forces, messages, schemas
@@ -38,89 +37,7 @@ def read_run(path: str | PathLike[str]) -> Iterator[Record]:
         ArchiveError: no run's file, damaged, or so short that not even its header is whole.
     """
     with RunFile(path) as file:
-        yield from _Decoder(file).records()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunInfo:
-    """What a run's file holds.
-
-    Attributes:
-        summary: None when the file ends before it.
-        counts: number of messages on each topic.
-        duration_s: machine time that the file covers.
-        complete: whether the program was replayed to its end.
-        intact: whether the file itself is whole; False for what a killed run left.
-        attachments: size in bytes of every attached file, by name.
-    """
-
-    path: Path
-    header: RunHeader
-    summary: RunSummary | None
-    counts: dict[str, int]
-    duration_s: float
-    complete: bool
-    intact: bool
-    attachments: dict[str, int]
-
-
-def run_info(path: str | PathLike[str]) -> RunInfo:
-    """Look into a run's file: at its index when it is whole, else at all of it.
-
-    Raises:
-        ArchiveError: as `read_run`.
-    """
-    with RunFile(path) as file:
-        decoder = _Decoder(file)
-        header = decoder.header()
-        footer = file.footer()
-        if footer is None or not footer.summary_start:
-            summary = _last_summary(decoder)
-            counts, end_ns = dict(decoder.counts), decoder.end_ns
-        else:
-            try:
-                summary, counts, end_ns = _from_index(file, footer.summary_start)
-            except DAMAGE:
-                raise file.damaged(footer.summary_start) from None
-        return RunInfo(
-            path=file.path,
-            header=header,
-            summary=summary,
-            counts=counts,
-            duration_s=summary.machine_time_s if summary else end_ns * 1e-9,
-            complete=bool(summary and summary.complete and footer),
-            intact=footer is not None,
-            attachments={a.name: len(a.data) for a in header.attachments},
-        )
-
-
-def _last_summary(decoder: _Decoder) -> RunSummary | None:
-    """Go through all records for their counts; the summary, if there is one."""
-    found = None
-    for record in decoder.records():
-        found = record if isinstance(record, RunSummary) else found
-    return found
-
-
-def _from_index(file: RunFile, start: int) -> tuple[RunSummary | None, dict[str, int], int]:
-    """Run summary, messages by topic, and last log time, from the summary section."""
-    topics: dict[int, str] = {}
-    statistics = summary = None
-    for frame in file.frames(start):
-        if frame.opcode == Opcode.CHANNEL:
-            channel = Channel.read(stream(frame.body))
-            topics[channel.id] = channel.topic
-        elif frame.opcode == Opcode.STATISTICS:
-            statistics = Statistics.read(stream(frame.body))
-        elif frame.opcode == Opcode.METADATA_INDEX:
-            index = MetadataIndex.read(stream(frame.body))
-            if index.name == meta.SUMMARY:
-                entry = Metadata.read(stream(next(file.frames(index.offset)).body))
-                summary = meta.to_summary(entry.metadata)
-    if statistics is None:
-        return summary, {}, 0
-    counts = {topics[c]: n for c, n in statistics.channel_message_counts.items()}
-    return summary, counts, statistics.message_end_time
+        yield from Decoder(file).records()
 
 
 @dataclass(slots=True)
@@ -141,8 +58,13 @@ class _PendingStep:
 
 
 @dataclass(slots=True)
-class _Decoder:
-    """Turns the frames of one file into records."""
+class Decoder:
+    """Turns the frames of one file into records.
+
+    Attributes:
+        counts: number of messages on each topic, of those that were read.
+        end_ns: latest log time among them.
+    """
 
     file: RunFile
     counts: Counter[str] = field(default_factory=Counter)
@@ -154,12 +76,13 @@ class _Decoder:
     _files: list[Attachment] = field(default_factory=list)
     _parameters: dict[str, str] = field(default_factory=dict)
     _header: RunHeader | None = None
+    _summary: RunSummary | None = None
     _pending: _PendingStep | None = None
 
     def records(self) -> Iterator[Record]:
-        """All records of the file."""
+        """All records of the file, the summary last wherever it stands."""
         self._files.clear()
-        self._header = None
+        self._header = self._summary = None
         for frame in self.file.frames():
             if self._header is None and frame.opcode in (Opcode.CHUNK, Opcode.MESSAGE):
                 raise self.file.damaged(frame.offset)
@@ -171,6 +94,8 @@ class _Decoder:
                 break
         if self._header is None:
             raise self._no_header()
+        if self._summary is not None:
+            yield self._summary
 
     def header(self) -> RunHeader:
         """The run's header alone."""
@@ -201,7 +126,7 @@ class _Decoder:
             self._header = meta.to_header(entry.metadata, self._parameters, self._files)
             yield self._header
         elif entry.name == meta.SUMMARY:
-            yield meta.to_summary(entry.metadata)
+            self._summary = meta.to_summary(entry.metadata)
 
     def _register(self, opcode: int, body: bytes) -> None:
         """Keep a schema or a channel; a schema that is not this program's own is read by what it says itself."""
@@ -232,7 +157,7 @@ class _Decoder:
                 _, _, channel, _, time_ns, _ = MESSAGE_HEAD.unpack_from(data, at)
                 block = self._force_block(channel, data, at)
                 if len(block):
-                    self._count(channel, len(block), int(block["log_time"].max()))
+                    self._count(channel, len(block), int(block["log_time"][-1]))
                     yield from self._take(block)
                     at += block.nbytes
                     continue
@@ -250,7 +175,7 @@ class _Decoder:
         """The force messages of the step at hand that stand here, as far as they have this program's layout."""
         layout = self._layouts.get(channel)
         if layout is None or self._pending is None:
-            return np.empty(0, forces.RECORD)
+            return forces.NO_RECORDS
         return layout.match(data, at, self._pending.missing)
 
     def _message(self, channel: int, payload: bytes) -> Iterator[Record]:
@@ -262,7 +187,7 @@ class _Decoder:
             yield from self._take(forces.row(message))
         elif topic == schemas.ENGAGEMENT_TOPIC:
             self._pending = _PendingStep(message, message.samples)
-            yield from self._take(np.empty(0, forces.RECORD))
+            yield from self._take(forces.NO_RECORDS)
         else:
             yield _CONVERTERS.get(topic, messages.to_patch)(message)
 

@@ -34,8 +34,11 @@ class McapSink:
         """Take one record.
 
         Raises:
-            ArchiveError: the disk is full or the like; or the record does not belong here (see `RunWriter.write`).
+            ArchiveError: the disk is full or the like; the sink is closed; or the record does not belong here (see
+                `RunWriter.write`).
         """
+        if self._file.closed:
+            raise self._file.is_closed()
         self._run.write(record)
 
     def close(self) -> None:

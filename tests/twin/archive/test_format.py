@@ -1,0 +1,184 @@
+"""The file is a good MCAP file to programs that know nothing of this one."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mcap.reader import NonSeekingReader, make_reader
+from mcap.writer import CompressionType, Writer
+
+from twin.archive import read_run, run_writer, schemas
+from twin.errors import ArchiveError
+from twin.record import Step
+
+DOC = Path(__file__).parents[3] / "docs" / "archive-format.md"
+
+
+@pytest.fixture
+def path(run_records, write, monkeypatch):
+    monkeypatch.setattr(run_writer, "CHUNK_BYTES", 2000)
+    return write(run_records, "slot.mcap")
+
+
+def decoded(path: Path, **select) -> list:
+    with path.open("rb") as stream:
+        return [
+            (channel.topic, message, schemas.embedded_class(schema.data, schema.name).FromString(message.data))
+            for schema, channel, message in make_reader(stream, validate_crcs=True).iter_messages(**select)
+        ]
+
+
+def test_the_library_reads_every_message_both_ways(path):
+    with path.open("rb") as stream:
+        statistics = make_reader(stream).get_summary().statistics
+        stream.seek(0)
+        in_sequence = list(NonSeekingReader(stream, validate_crcs=True).iter_messages(log_time_order=False))
+    assert len(decoded(path)) == len(in_sequence) == statistics.message_count == 93
+    assert statistics.chunk_count > 4
+
+
+def test_the_index_leads_to_every_force_message(path, run_records):
+    steps = [r for r in run_records if isinstance(r, Step)]
+    force = np.concatenate([s.samples.force_n for s in steps])
+    forces = decoded(path, topics=["/force"])
+    np.testing.assert_array_equal([(m.fx_n, m.fy_n, m.fz_n) for _, _, m in forces], force)
+    assert [m.log_time for _, m, _ in forces] == [round(m.t_s * 1e9) for _, _, m in forces]
+    assert [m.sequence for _, m, _ in forces] == list(range(len(force)))
+    assert [m.nc_line for _, _, m in forces] == [s.nc_line for s in steps for _ in s.samples.t_s]
+    some = decoded(path, topics=["/force"], starting_at=forces[20][1].log_time, ending_before=forces[30][1].log_time)
+    assert [m.sequence for _, m, _ in some] == list(range(20, 30))
+
+
+def test_summary_section(path):
+    with path.open("rb") as stream:
+        reader = make_reader(stream)
+        assert (reader.get_header().profile, reader.get_header().library) == ("twin", "machining-twin 0.1.0")
+        summary = reader.get_summary()
+        assert [a.name for a in reader.iter_attachments()] == ["slot.nc", "job.toml", "twin.tools.json"]
+        metadata = {m.name: m.metadata for m in reader.iter_metadata()}
+    statistics = summary.statistics
+    topics = {summary.channels[c].topic: n for c, n in statistics.channel_message_counts.items()}
+    assert topics["/force"] == 55
+    assert (statistics.message_start_time, statistics.message_end_time) == (0, round(60 / 21600 * 1e9))
+    assert sum(sum(1 for _ in c.message_index_offsets) > 0 for c in summary.chunk_indexes) == statistics.chunk_count
+    assert list(metadata) == ["twin.parameters", "twin.run", "twin.summary"]
+    assert metadata["twin.parameters"] == {"cutting.Ktc": "935.62", "program.file": "slot.nc"}
+    assert metadata["twin.summary"]["mean_force_n"] == "[1.5, 2.5, 3.5, 0.3333333333333333]"
+
+
+def test_poses_are_starts_of_steps_and_the_end(path, run_records):
+    steps = [r for r in run_records if isinstance(r, Step)]
+    poses = [m for topic, _, m in decoded(path) if topic == "/machine/tool"]
+    wanted = [s.start_mm for s in steps] + [steps[-1].end_mm]
+    assert [(p.translation.x, p.translation.y, p.translation.z) for p in poses] == wanted
+    assert {(p.parent_frame_id, p.child_frame_id, p.rotation.w) for p in poses} == {("workpiece", "tool", 1.0)}
+
+
+def test_events_and_collisions_are_log_lines(path):
+    logs = [(topic, m.level, m.message, m.name) for topic, _, m in decoded(path, topics=["/nc", "/collision"])]
+    assert logs[0] == ("/nc", 2, "1: 0: text of block", "block")
+    assert logs[6] == ("/nc", 3, "7: 6: text of notice", "notice")
+    assert logs[7][:3] == ("/collision", 4, "slot.nc:4: shank of T12 in the stock at X0.1 Y-0.2 Z0.333")
+
+
+def test_the_drawn_tool_lies_on_its_profile(path):
+    shape = next(m for topic, _, m in decoded(path) if topic == "/machine/tool/shape")
+    points = np.frombuffer(shape.data, np.dtype((np.void, shape.point_stride)))
+    xyz = np.frombuffer(points.tobytes(), "<f4").reshape(len(points), -1)[:, :3]
+    assert (shape.frame_id, shape.fields[2].name, shape.fields[2].offset) == ("tool", "z", 8)
+    assert (xyz[:, 2].min(), xyz[:, 2].max()) == (0.0, 40.0)
+    assert np.hypot(xyz[:, 0], xyz[:, 1]).max() == pytest.approx(6.0, abs=1e-5)
+
+
+def rewrite(source: Path, target: Path, compression: CompressionType, chunked: bool) -> None:
+    """Copy a run with the library's own writer, every message packed anew with its zeros left out."""
+    with source.open("rb") as stream:
+        writer = Writer(str(target), compression=compression, use_chunking=chunked, chunk_size=3000)
+        writer.start(profile="twin", library="another program")
+        reader = make_reader(stream)
+        for a in reader.iter_attachments():
+            writer.add_attachment(a.create_time, a.log_time, a.name, a.media_type, a.data)
+        metadata = list(reader.iter_metadata())
+        for entry in metadata[:2]:
+            writer.add_metadata(entry.name, entry.metadata)
+        channels = {}
+        for schema, channel, message in reader.iter_messages(log_time_order=False):
+            if channel.topic not in channels:
+                number = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.topic] = writer.register_channel(channel.topic, channel.message_encoding, number)
+            own = schemas.embedded_class(schema.data, schema.name).FromString(message.data)
+            data = own.SerializeToString()
+            writer.add_message(channels[channel.topic], message.log_time, data, message.publish_time)
+        writer.add_metadata(metadata[2].name, metadata[2].metadata)
+        writer.finish()
+
+
+@pytest.mark.parametrize(
+    ("compression", "chunked"),
+    [(CompressionType.ZSTD, True), (CompressionType.NONE, True), (CompressionType.NONE, False)],
+)
+def test_a_run_written_anew_by_another_program_is_the_same(path, run_records, same, tmp_path, compression, chunked):
+    rewrite(path, tmp_path / "other.mcap", compression, chunked)
+    same(list(read_run(tmp_path / "other.mcap")), run_records)
+
+
+def test_another_compression_is_named(path, tmp_path):
+    rewrite(path, tmp_path / "other.mcap", CompressionType.LZ4, True)
+    with pytest.raises(ArchiveError, match=r"other.mcap: packed by 'lz4', expected 'zstd' or nothing$"):
+        list(read_run(tmp_path / "other.mcap"))
+
+
+@pytest.mark.parametrize("name", schemas.MESSAGES)
+def test_embedded_schema_and_own_class_agree(name):
+    fields = {f.name: f.number for f in schemas.embedded_class(schemas.descriptor_set(name), name).DESCRIPTOR.fields}
+    assert fields == {f.name: f.number for f in schemas.message_class(name).DESCRIPTOR.fields}
+    assert fields == {field: number for field, number, _ in schemas.MESSAGES[name]}
+
+
+@pytest.mark.parametrize("name", schemas.MESSAGES)
+def test_the_document_prints_every_message(name):
+    assert schemas.proto_text(name) in DOC.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("topic", [*schemas.TOPICS, "/workpiece/<patch>"])
+def test_the_document_names_every_topic(topic):
+    assert f"| `{topic}` | `{schemas.message_on(topic)}` |" in DOC.read_text(encoding="utf-8")
+
+
+def test_the_code_in_the_document_reads_the_forces(path, run_records, monkeypatch):
+    code = re.search(r"```python\n(.*?)```", DOC.read_text(encoding="utf-8"), re.DOTALL)[1]
+    monkeypatch.chdir(path.parent)
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        exec(compile(code, str(DOC), "exec"), {})
+    rows = [
+        f"{t} {f[0]} {f[1]} {f[2]} {s.nc_line}"
+        for s in run_records
+        if isinstance(s, Step)
+        for t, f in zip(s.samples.t_s.tolist(), s.samples.force_n.tolist(), strict=True)
+    ]
+    assert out.getvalue().splitlines() == rows
+
+
+RERUN = shutil.which("rerun", path=str(Path(sys.executable).parent)) or shutil.which("rerun")
+
+
+@pytest.mark.skipif(RERUN is None, reason="needs the rerun program")
+def test_rerun_accepts_a_whole_file_and_recovers_a_cut_one(path, tmp_path):
+    def rerun(*arguments: str) -> str:
+        done = subprocess.run([RERUN, "mcap", *arguments], capture_output=True, text=True, check=True)
+        return done.stdout
+
+    checked = rerun("check", "--full", str(path))
+    assert len(re.findall(r"^ok ", checked, re.MULTILINE)) == 8
+    assert re.search(r"Messages +93\n", rerun("info", str(path)))
+    cut = tmp_path / "cut.partial.mcap"
+    cut.write_bytes(path.read_bytes()[:-2500])
+    assert "/force" in rerun("check", "--recover", str(cut))
