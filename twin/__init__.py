@@ -1,1 +1,8 @@
 """A machining digital twin: replays NC programs, removes material, predicts cutting forces."""
+
+from importlib.metadata import PackageNotFoundError, version
+
+try:
+    __version__ = version("machining-twin")
+except PackageNotFoundError:  # run from a checkout that is not installed
+    __version__ = "0.0.0+checkout"

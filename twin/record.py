@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 
 ForceOn: TypeAlias = Literal["tool", "workpiece"]
+CollisionKind: TypeAlias = Literal["rapid", "shank", "holder", "spindle-stopped"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,7 +164,7 @@ class Collision:
     t_s: float
     nc_line: int
     tool: int
-    kind: Literal["rapid", "shank", "holder", "spindle-stopped"]
+    kind: CollisionKind
     point_mm: tuple[float, float, float]
     volume_mm3: float
     message: str

@@ -1,0 +1,278 @@
+"""Flow A on one page: NC program -> motion -> engagement -> forces -> removal -> records.
+
+    run = Replay(load_job("job.toml"))
+    for record in run:
+        sink.write(record)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+
+from gcode.events import Block, Event, ToolChange
+from gcode.interpret import interpret_file
+from twin.arrays import FloatArray
+from twin.cutting.engagement import NO_ENGAGEMENT, EngagementMap
+from twin.errors import CollisionError, ReplayError
+from twin.job import Job
+from twin.motion.from_nc import moves_from_nc
+from twin.motion.path import Move
+from twin.record import Collision, CollisionKind, ForceSamples, Record, RunSummary, Step
+from twin.run.clock import SpindleClock
+from twin.run.header import run_header
+from twin.run.material import Material
+from twin.run.nc_events import nc_event
+from twin.run.preview import Preview
+from twin.run.setup import ToolSetup, machine_settings, stock_slices, tool_setup, workpiece
+from twin.run.totals import Totals
+from twin.tolerance import Tolerance
+
+
+class Replay:
+    """One replay of a job; iterate over it once for its records, in order, with flat memory.
+
+    Making it reads the whole program and refuses what cannot be replayed before anything is cut.
+
+    Args:
+        strict: end at the first collision with a `CollisionError` instead of reporting it and going on.
+
+    Raises:
+        TwinError, gcode.errors.GcodeError: a job, tool, stock or program that cannot be replayed.
+    """
+
+    def __init__(self, job: Job, *, strict: bool = False) -> None:
+        self.job = job
+        self._strict = strict
+        self._tolerance = Tolerance.for_pitch(job.simulation.slice_pitch_mm)
+        slices = stock_slices(job)
+        self._settings = machine_settings(job, slices)
+        self._tools = {t.number: tool_setup(job, t, self._tolerance) for t in job.tools}
+        self.planned_time_s = sum(m.duration_s for m in self._checked_moves())
+        self.workpiece = workpiece(job, slices)
+        self._material = Material(self.workpiece, self._tolerance)
+        self._rows = round(360.0 / job.simulation.angle_step_deg)
+        self._clock = SpindleClock(self._rows)
+        self._descriptions = {n: t.description for n, t in self._tools.items()}
+        self._totals = Totals(self._descriptions)
+        self._preview = Preview(self.workpiece, job.simulation.preview_pitch_mm)
+        self._t_s = 0.0
+        self._steps = 0
+        self._checked_tool = 0
+
+    def __iter__(self) -> Iterator[Record]:
+        yield run_header(self.job, self.workpiece, [t.record for t in self._tools.values()], self.planned_time_s)
+        yield from self._preview.all_patches(0.0)
+        for item in self._program():
+            yield from self._move(item) if isinstance(item, Move) else self._event(item)
+            if self._preview.due(self._t_s, self.planned_time_s):
+                yield from self._changed_patches()
+        self._material.flush()
+        yield from self._changed_patches()
+        yield self.summary(complete=True)
+
+    def _program(self) -> Iterator[Move | Event]:
+        events = interpret_file(self.job.program.file, self._settings, dialect=self.job.program.dialect)
+        return moves_from_nc(
+            events,
+            origin_mm=np.array(self.job.machine.offsets[self.job.stock.wcs]),
+            tool_length_mm={t.number: t.length_mm for t in self.job.tools},
+            rapid_mm_min=self.job.machine.rapid_mm_min,
+        )
+
+    def _checked_moves(self) -> Iterator[Move]:
+        """The program's moves, with the tools they need checked."""
+        known = ", ".join(str(n) for n in sorted(self._tools))
+        for item in self._program():
+            if isinstance(item, ToolChange) and item.tool not in self._tools and item.tool != 0:
+                raise ReplayError(f"{item.place}: tool T{item.tool} is not in the job, expected one of {known}")
+            if isinstance(item, Move):
+                if item.tool == 0 and not item.rapid and item.length_mm > 0.0:
+                    raise ReplayError(
+                        f"{self.job.program.file}:{item.nc_line}: feed motion without a tool in the spindle, "
+                        "expected a tool change (T.. M6) before, or program.tool in the job"
+                    )
+                yield item
+
+    def _event(self, event: Event) -> Iterator[Record]:
+        if isinstance(event, Block):
+            self._totals.set_block(event.place.text)
+        if isinstance(event, ToolChange):
+            self._t_s += self.job.machine.tool_change_s
+            self._totals.add_time(self._t_s)
+        yield nc_event(event, self._t_s, self._descriptions)
+
+    def _move(self, move: Move) -> Iterator[Record]:
+        """Step a motion: engagement and forces at each step, then its material removed."""
+        tool = self._tools.get(move.tool)
+        if tool is None or not self._material.near(tool.cutter, *_box(move)):
+            yield self._step(move, move.start_mm, move.end_mm, move.duration_s, None, None)
+            return
+        self._refuse_start_inside(tool, move)
+        corners = move.corners_mm(self.job.simulation.step_mm, self._tolerance.chord_mm)
+        lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+        for (start, end), length in zip(pairwise(corners), lengths, strict=True):
+            yield from self._piece(move, tool, start, end, move.duration_s * float(length / lengths.sum()))
+
+    def _piece(
+        self, move: Move, tool: ToolSetup, start: FloatArray, end: FloatArray, duration_s: float
+    ) -> Iterator[Record]:
+        """One straight piece of a motion."""
+        t_s = self._t_s
+        if move.rapid or move.spindle_rpm == 0.0 or not np.any(end != start):
+            yield self._step(move, start, end, duration_s, None, None)
+            volume = self._material.cut_at_once(tool, start, end)
+            if self._material.significant(volume):
+                kind: CollisionKind = "rapid" if move.rapid else "spindle-stopped"
+                yield self._collision(move, kind, start, volume, t_s)
+        else:
+            yield from self._cut(move, tool, start, end, duration_s)
+            self._material.add(tool, start, end)
+        for touch in self._material.touches(tool, start, end):
+            yield self._collision(move, touch.body, start, touch.volume_mm3, t_s)
+
+    def _cut(
+        self, move: Move, tool: ToolSetup, start: FloatArray, end: FloatArray, duration_s: float
+    ) -> Iterator[Record]:
+        """The steps of a feed motion, each asked for its engagement at its middle."""
+        along = end - start
+        length = float(np.linalg.norm(along))
+        feed = along / length
+        count = max(1, math.ceil(length / self.job.simulation.step_mm * (1.0 - 1e-9)))
+        per_tooth = move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)
+        pending = self._material.pending
+        for i in range(count):
+            a, b = start + along * (i / count), start + along * ((i + 1) / count)
+            found = tool.engager.engage(
+                0.5 * (a + b), feed, move.feed_mm_min / 60.0, per_tooth, self.workpiece, pending
+            )
+            yield self._step(move, a, b, duration_s / count, found, feed)
+
+    def _step(
+        self,
+        move: Move,
+        start: FloatArray,
+        end: FloatArray,
+        duration_s: float,
+        engagement: EngagementMap | None,
+        feed: FloatArray | None,
+    ) -> Step:
+        """The record of one step; moves time and spindle on."""
+        times, angles = self._clock.advance(self._t_s, duration_s, move.spindle_rpm)
+        tool = self._tools.get(move.tool)
+        if engagement is None or feed is None or tool is None or tool.forces is None:
+            keep = [0, -1] if len(times) > 2 else slice(None)
+            times, angles = times[keep], angles[keep]
+            loads = np.zeros((len(times), 4))
+        else:
+            per_rev = move.feed_mm_min / abs(move.spindle_rpm)
+            loads = tool.forces.forces(angles, 1 if move.spindle_rpm > 0 else -1, feed, per_rev, engagement)
+        if tool is not None and tool.forces is None:
+            times, angles, loads = times[:0], angles[:0], loads[:0]
+        torque_nm = loads[:, 3] * 1e-3
+        step = Step(
+            index=self._steps,
+            t_s=self._t_s,
+            duration_s=duration_s,
+            start_mm=_point(start),
+            end_mm=_point(end),
+            nc_line=move.nc_line,
+            tool=move.tool,
+            rapid=move.rapid,
+            feed_mm_min=move.feed_mm_min,
+            spindle_rpm=move.spindle_rpm,
+            engagement=engagement.summary if engagement is not None else NO_ENGAGEMENT,
+            samples=ForceSamples(
+                t_s=times,
+                spindle_angle_rad=angles,
+                force_n=loads[:, :3],
+                torque_nm=torque_nm,
+                power_w=torque_nm * abs(move.spindle_rpm) * (2.0 * math.pi / 60.0),
+            ),
+        )
+        self._steps += 1
+        self._t_s += duration_s
+        self._totals.add_step(step, 60.0 / (abs(move.spindle_rpm) * self._rows) if move.spindle_rpm else 0.0)
+        return step
+
+    def _refuse_start_inside(self, tool: ToolSetup, move: Move) -> None:
+        """The first motion near the stock after a tool change must not begin inside the material."""
+        if tool.number == self._checked_tool:
+            return
+        self._checked_tool = tool.number
+        volume = self._material.volume_inside(tool, move.start_mm)
+        if self._material.significant(volume):
+            x, y, z = move.start_mm
+            raise ReplayError(
+                f"{self.job.program.file}:{move.nc_line}: tool T{tool.number} ({tool.description}) begins inside the "
+                f"stock at X{x:g} Y{y:g} Z{z:g}, expected a start outside it (machine.start_mm, or the program's "
+                "tool change position)"
+            )
+
+    def _collision(
+        self, move: Move, kind: CollisionKind, start: FloatArray, volume: float, t_s: float
+    ) -> Collision:
+        x, y, z = start
+        what = {
+            "rapid": "rapid motion through the stock",
+            "spindle-stopped": "feed motion through the stock with the spindle stopped",
+            "shank": "the shank touches the stock",
+            "holder": "the holder touches the stock",
+        }[kind]
+        message = (
+            f"{self.job.program.file}:{move.nc_line}: T{move.tool}: {what}, "
+            f"from X{x:.3f} Y{y:.3f} Z{z:.3f}, {volume:.3g} mm3"
+        )
+        self._totals.collisions += 1
+        if self._strict:
+            raise CollisionError(message)
+        return Collision(
+            t_s=t_s,
+            nc_line=move.nc_line,
+            tool=move.tool,
+            kind=kind,
+            point_mm=_point(start),
+            volume_mm3=volume,
+            message=message,
+        )
+
+    def _changed_patches(self) -> Iterator[Record]:
+        changed, self._material.changed = self._material.changed, []
+        return self._preview.changed_patches(self._t_s, changed)
+
+    def summary(self, *, complete: bool = False) -> RunSummary:
+        """Sums, peaks and digest of what was replayed so far."""
+        areas = tuple(self.workpiece.areas_mm2(axis) for axis in range(3))
+        return self._totals.summary(
+            complete=complete, areas_mm2=areas, removed_mm3=self._material.removed_mm3
+        )
+
+    def close(self) -> None:
+        """Let worker threads go."""
+        self._material.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def _box(move: Move) -> tuple[FloatArray, FloatArray]:
+    """Two opposite corners of a motion's box."""
+    if move.arc is None:
+        return move.start_mm, move.end_mm
+    corners = move.corners_mm(math.inf, 0.01 * move.length_mm)
+    reach = 0.02 * move.length_mm
+    return corners.min(axis=0) - reach, corners.max(axis=0) + reach
+
+
+def _point(p: FloatArray) -> tuple[float, float, float]:
+    return float(p[0]), float(p[1]), float(p[2])

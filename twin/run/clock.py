@@ -1,0 +1,51 @@
+"""The spindle's angle through a program, and the times at which it passes multiples of the angle step."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from twin.arrays import FloatArray
+
+#: A sample this close before a step's end, in angle steps, belongs to the next step.
+_EDGE = 1e-9
+
+
+class SpindleClock:
+    """Turns with the spindle, from angle 0 at program start, and never jumps.
+
+    Samples are counted in turned angle, whichever way: the n-th is taken when the spindle has turned by n angle steps.
+
+    Args:
+        rows: samples a revolution.
+    """
+
+    def __init__(self, rows: int) -> None:
+        self._step_rad = 2.0 * math.pi / rows
+        self._rows = rows
+        self._turned_steps = 0.0
+        self._angle_rad = 0.0
+
+    def advance(self, t_s: float, duration_s: float, spindle_rpm: float) -> tuple[FloatArray, FloatArray]:
+        """Turn for a while and tell the samples taken on the way.
+
+        Args:
+            t_s: machine time at the beginning.
+            spindle_rpm: signed speed.
+
+        Returns:
+            Times and signed spindle angles of the samples in [t_s, t_s + duration_s), both of shape (n,).
+        """
+        if spindle_rpm == 0.0 or duration_s <= 0.0:
+            return np.zeros(0), np.zeros(0)
+        sense = math.copysign(1.0, spindle_rpm)
+        rate = abs(spindle_rpm) / 60.0 * self._rows
+        before = self._turned_steps
+        after = before + rate * duration_s
+        numbers = np.arange(math.ceil(before - _EDGE), math.ceil(after - _EDGE), dtype=np.float64)
+        times = t_s + np.maximum(0.0, (numbers - before) / rate)
+        angles = self._angle_rad + sense * (numbers - before) * self._step_rad
+        self._turned_steps = after
+        self._angle_rad += sense * (after - before) * self._step_rad
+        return times, angles

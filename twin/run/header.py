@@ -1,0 +1,58 @@
+"""The first record of a run: everything that shaped it, so that the archive alone can explain its numbers."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from twin import __version__
+from twin.arrays import frozen
+from twin.job import Job
+from twin.record import Attachment, RunHeader, ToolRecord
+from twin.workpiece.trislice import TriSlices
+
+_LIBRARIES = ("numpy", "numba", "pyclipper", "trimesh")
+
+
+def run_header(
+    job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], planned_time_s: float
+) -> RunHeader:
+    """Describe a run: stock, tools, settings with their defaults, versions, and the files it was made from."""
+    parameters = dict(_flat(job.model_dump(mode="json", exclude={"text", "path"})))
+    parameters |= {f"version.{name}": version(name) for name in _LIBRARIES}
+    parameters |= {"version.python": platform.python_version(), "version.twin": __version__}
+    x, y, z = workpiece.pitch_mm
+    return RunHeader(
+        twin_version=__version__,
+        program=Path(job.program.file).name,
+        stock_bounds_mm=frozen([workpiece.low_mm, workpiece.high_mm], "stock_bounds_mm", (2, 3)),
+        slice_pitch_mm=(float(x), float(y), float(z)),
+        tools=tuple(tools),
+        planned_time_s=planned_time_s,
+        parameters=parameters,
+        attachments=tuple(_attachments(job)),
+    )
+
+
+def _flat(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
+    """Nested settings as (key path, text) pairs; settings that are not given are left out."""
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield from _flat(inner, f"{path}.{key}" if path else str(key))
+    elif isinstance(value, list | tuple) and any(isinstance(v, Mapping) for v in value):
+        for index, inner in enumerate(value):
+            yield from _flat(inner, f"{path}[{index}]")
+    elif value is not None:
+        yield path, str(value)
+
+
+def _attachments(job: Job) -> Iterator[Attachment]:
+    yield Attachment(name=job.path.name, media_type="application/toml", data=job.text.encode())
+    program = Path(job.program.file)
+    yield Attachment(name=program.name, media_type="text/plain", data=program.read_bytes())
+    if job.stock.stl is not None:
+        stl = Path(job.stock.stl)
+        yield Attachment(name=stl.name, media_type="model/stl", data=stl.read_bytes())

@@ -1,0 +1,103 @@
+"""The workpiece under a tool: sweeps wait their turn, are subtracted, and what must not touch it is noticed."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.arrays import FloatArray
+from twin.motion.sweep import Body, Sweep
+from twin.record import CollisionKind
+from twin.run.setup import ToolSetup
+from twin.tolerance import Tolerance
+from twin.workpiece.removal import Removal
+from twin.workpiece.trislice import TriSlices
+
+#: Sweeps wait until the tool has gone on by this many slice pitches, or until this many are waiting.
+PENDING_PITCHES = 10.0
+PENDING_SWEEPS = 48
+
+
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """A body that swept through material which it must not touch."""
+
+    body: CollisionKind
+    volume_mm3: float
+
+
+class Material:
+    """Takes sweeps out of the workpiece in order.
+
+    The newest sweeps wait before they are subtracted from the slices and are left out of the material exactly
+    meanwhile: near the tool, where the surface has just been made, engagement does not depend on the slices' pitch.
+    """
+
+    def __init__(self, workpiece: TriSlices, tolerance: Tolerance) -> None:
+        self.workpiece = workpiece
+        self._tolerance = tolerance
+        self._removal = Removal(workpiece, tolerance.chord_mm)
+        self._waiting: deque[tuple[Sweep, int]] = deque()
+        self._window_mm = PENDING_PITCHES * float(np.max(workpiece.pitch_mm))
+        self.removed_mm3: dict[int, float] = {}
+        self.changed: list[tuple[FloatArray, FloatArray]] = []
+
+    @property
+    def pending(self) -> list[Sweep]:
+        """Sweeps that are not yet subtracted from the slices, oldest first."""
+        return [sweep for sweep, _ in self._waiting]
+
+    def near(self, body: Body, start_mm: FloatArray, end_mm: FloatArray) -> bool:
+        """Whether a motion's box meets the stock's box."""
+        low, high = Sweep(body, start_mm, end_mm).bounds_mm
+        return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
+
+    def add(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> None:
+        """A feed motion of the cutting part; subtracted now or a little later."""
+        self._waiting.append((Sweep(tool.cutter, start_mm, end_mm), tool.number))
+        newer = sum(s.length_mm for s, _ in self._waiting) - self._waiting[0][0].length_mm
+        while len(self._waiting) > 1 and (newer >= self._window_mm or len(self._waiting) > PENDING_SWEEPS):
+            self._subtract(*self._waiting.popleft())
+            newer -= self._waiting[0][0].length_mm
+
+    def flush(self) -> None:
+        """Subtract everything that waits."""
+        while self._waiting:
+            self._subtract(*self._waiting.popleft())
+
+    def cut_at_once(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> float:
+        """A motion of the cutting part that ought to meet no material; returns the volume it removed."""
+        self.flush()
+        return self._subtract(Sweep(tool.cutter, start_mm, end_mm), tool.number)
+
+    def touches(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> Iterable[Touch]:
+        """Shank and holder of a tool that sweep through material on a motion, after its own cutting part went by."""
+        for name, body in tool.rigid:
+            if self.near(body, start_mm, end_mm):
+                self.flush()
+                volume = self._removal.cut(Sweep(body, start_mm, end_mm), apply=False)
+                if volume > self._tolerance.contact_mm3:
+                    yield Touch(name, volume)
+
+    def volume_inside(self, tool: ToolSetup, tip_mm: FloatArray) -> float:
+        """Volume of material that the cutting part stands in, not moving."""
+        self.flush()
+        return self._removal.cut(Sweep(tool.cutter, tip_mm, tip_mm), apply=False)
+
+    def significant(self, volume_mm3: float) -> bool:
+        """Whether a volume is more than a touch within tolerance."""
+        return volume_mm3 > self._tolerance.contact_mm3
+
+    def _subtract(self, sweep: Sweep, tool: int) -> float:
+        volume = self._removal.cut(sweep)
+        if volume > 0.0:
+            self.removed_mm3[tool] = self.removed_mm3.get(tool, 0.0) + volume
+            self.changed.append(sweep.bounds_mm)
+        return volume
+
+    def close(self) -> None:
+        """Let worker threads go."""
+        self._removal.close()
