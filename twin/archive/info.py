@@ -54,8 +54,8 @@ def run_info(path: str | PathLike[str]) -> RunInfo:
         else:
             try:
                 summary, counts, end_ns = _from_index(file, footer.summary_start)
-            except DAMAGE:
-                raise file.damaged(footer.summary_start) from None
+            except DAMAGE as error:
+                raise file.damaged(footer.summary_start) from error
         return RunInfo(
             path=file.path,
             header=header,

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from twin.errors import ArchiveError
 
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+
 
 def partial_path(path: Path) -> Path:
     """Name of a file while it is written: ``slot.partial.mcap`` for ``slot.mcap``, so that viewers open it too."""
@@ -103,7 +105,7 @@ class PartialFile:
 
     def _open(self) -> int | None:
         try:
-            return os.open(self.partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+            return os.open(self.partial, _NEW, 0o666)
         except FileExistsError:
             raise ArchiveError(
                 f"{self.partial}: left by a run that did not finish, or of one that is running; "

@@ -88,8 +88,8 @@ class Decoder:
                 raise self.file.damaged(frame.offset)
             try:
                 yield from self._frame(frame)
-            except DAMAGE:
-                raise self.file.damaged(frame.offset) from None
+            except DAMAGE as error:
+                raise self.file.damaged(frame.offset) from error
             if frame.opcode == Opcode.DATA_END:
                 break
         if self._header is None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from twin.archive.interrupt import after_this
 from twin.archive.partial import PartialFile
 from twin.archive.run_writer import RunWriter
 from twin.record import Record
@@ -15,7 +16,7 @@ from twin.record import Record
 class McapSink:
     """Writes ``path``, under the name ``*.partial.mcap`` until `close`: a killed run leaves that, readable.
 
-    When writing fails, the records that were complete stay under the partial name, and `close` does nothing more. A
+    Ctrl-C waits until the record at hand is in. When writing fails, the records that were complete stay under the partial name, and `close` does nothing more. A
     run that ends before its header leaves no file.
 
     Args:
@@ -39,7 +40,8 @@ class McapSink:
         """
         if self._file.closed:
             raise self._file.is_closed()
-        self._run.write(record)
+        with after_this():
+            self._run.write(record)
 
     def close(self) -> None:
         """Finish the file and give it its final name.
@@ -49,11 +51,12 @@ class McapSink:
         """
         if self._file.closed:
             return
-        if not self._run.started:
-            self._file.discard()
-            return
-        self._run.finish()
-        self._file.commit()
+        with after_this():
+            if self._run.started:
+                self._run.finish()
+                self._file.commit()
+            else:
+                self._file.discard()
 
     def __enter__(self) -> Self:
         return self

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -126,3 +130,10 @@ def test_archive_and_memory_give_the_same_table(path, run_records):
     for record in run_records:
         memory.write(record)
     assert pa.Table.equals(read_forces(path), memory.force_table().combine_chunks())
+
+
+def test_the_door_opens_without_arrow_and_viewer():
+    code = "import sys, twin.archive, twin.sinks.mcap_sink; print({'pyarrow', 'rerun', 'numba'} & set(sys.modules))"
+    root = Path(__file__).parents[3]
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=root)
+    assert done.stdout == "set()\n"

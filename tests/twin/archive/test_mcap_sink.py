@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import signal
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 
 from twin.archive import read_run, run_info
@@ -83,6 +87,34 @@ def test_an_exception_leaves_a_whole_file_up_to_there(tmp_path, run_records, sam
         raise KeyboardInterrupt
     same(list(read_run(tmp_path / "run.mcap")), run_records[:15])
     assert not run_info(tmp_path / "run.mcap").complete
+
+
+def test_ctrl_c_while_writing_waits_for_the_record(tmp_path, run_records, same, monkeypatch):
+    write = os.write
+
+    def interrupted(file: int, data: bytes) -> int:
+        signal.raise_signal(signal.SIGINT)
+        done = write(file, data)
+        signal.raise_signal(signal.SIGINT)
+        return done
+
+    monkeypatch.setattr("twin.archive.run_writer.CHUNK_BYTES", 1)
+    monkeypatch.setattr("twin.archive.partial.os.write", interrupted)
+    sink = McapSink(tmp_path / "run.mcap")
+    for record in run_records:
+        with pytest.raises(KeyboardInterrupt):
+            sink.write(record)
+    with pytest.raises(KeyboardInterrupt):
+        sink.close()
+    same(list(read_run(tmp_path / "run.mcap")), run_records)
+    assert run_info(tmp_path / "run.mcap").complete
+
+
+def test_a_sink_works_in_any_thread(tmp_path, run_records, same):
+    with ThreadPoolExecutor(1) as pool, McapSink(tmp_path / "run.mcap") as sink:
+        for record in run_records:
+            pool.submit(sink.write, record).result()
+    same(list(read_run(tmp_path / "run.mcap")), run_records)
 
 
 def test_writing_after_close_is_an_error(tmp_path, run_records, new_step):
