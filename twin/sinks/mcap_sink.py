@@ -16,8 +16,8 @@ from twin.record import Record
 class McapSink:
     """Writes ``path``, under the name ``*.partial.mcap`` until `close`: a killed run leaves that, readable.
 
-    Ctrl-C waits until the record at hand is in. When writing fails, the records that were complete stay under the partial name, and `close` does nothing more. A
-    run that ends before its header leaves no file.
+    Ctrl-C waits until the record at hand is in. When writing fails, the records that were complete stay under the
+    partial name, and `close` does nothing more. A run that ends before its header leaves no file.
 
     Args:
         path: the run's file; missing folders above it are made.
