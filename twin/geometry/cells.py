@@ -40,7 +40,7 @@ class CellFamily:
         self.grid = np.array([low_uv_mm[0], low_uv_mm[1], cell_mm])
         self.columns = max(1, math.ceil((high_uv_mm[0] - low_uv_mm[0]) / cell_mm * (1.0 - 1e-12)))
         self.tiles = max(1, math.ceil((high_uv_mm[1] - low_uv_mm[1]) / cell_mm * (1.0 - 1e-12)))
-        self.area_mm2 = np.array([r.area_mm2 for r in regions])
+        self.area_mm2 = np.array([r.area_mm2 for r in regions], dtype=np.float64)
         self.base: NDArray[np.int64] = np.full(len(regions), -1, dtype=np.int64)
         self._regions = regions
         self._used = 0

@@ -53,7 +53,7 @@ class Region:
     @property
     def area_mm2(self) -> float:
         """Area of the material: holes count negative."""
-        return sum(signed_area_mm2(r) for r in self.rings)
+        return sum((signed_area_mm2(r) for r in self.rings), 0.0)
 
     @property
     def empty(self) -> bool:

@@ -1,0 +1,110 @@
+"""Sections of swept tools against the tool itself, placed at many positions along its way."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+import shapely
+
+from twin.arrays import FloatArray
+from twin.motion.sweep import Body, Sweep, clear_swept
+from twin.tools.shape import ToolShape, tool_shape
+
+SHAPES = {
+    "ball": tool_shape("ball", 8.0, 6.0),
+    "flat": tool_shape("flat", 6.0, 5.0),
+    "bull": tool_shape("bull", 8.0, 6.0, corner_radius_mm=1.5),
+    "taper": tool_shape("taper", 3.0, 8.0, corner_radius_mm=1.0, taper_deg=8.0),
+    "cone": tool_shape("taper", 3.0, 8.0, taper_deg=8.0),
+}
+MOVES = [(0, 0, 0), (3, 0, 0), (2, 1.3, 0), (0, 0, -2.5), (2, 1, -0.7), (0.05, 0.08, 0.01), (-1, 2, 2)]
+CHORD_MM = 0.001
+POSITIONS = 41 if os.environ.get("NUMBA_DISABLE_JIT") == "1" else 401
+SAMPLES = 800
+
+
+def in_tool(shape: ToolShape, tip: FloatArray, points: FloatArray, margin: float = 0.0) -> np.ndarray:
+    """Membership straight from the meridian, ``margin`` larger all around."""
+    height = points[:, 2] - tip[2]
+    radius = shape.radius_mm(np.clip(height + margin, 0.0, shape.height_mm)) + margin
+    off = np.hypot(points[:, 0] - tip[0], points[:, 1] - tip[1])
+    return (height >= -margin) & (height <= shape.height_mm + margin) & (off <= radius)
+
+
+def in_sweep(shape: ToolShape, start: FloatArray, end: FloatArray, points: FloatArray, margin: float) -> np.ndarray:
+    found = np.zeros(len(points), dtype=bool)
+    for part in np.linspace(0.0, 1.0, POSITIONS):
+        found |= in_tool(shape, start + part * (end - start), points, margin)
+    return found
+
+
+@pytest.mark.parametrize("move", MOVES)
+@pytest.mark.parametrize("kind", SHAPES)
+def test_sections_hold_the_swept_tool_and_little_more(kind: str, move: tuple[float, float, float]) -> None:
+    shape = SHAPES[kind]
+    rng = np.random.default_rng(5)
+    start = rng.uniform(-1.0, 1.0, 3)
+    end = start + np.array(move)
+    sweep = Sweep(Body.of(shape, chord_mm=CHORD_MM), start, end)
+    between = np.linalg.norm(move) / (POSITIONS - 1)
+    for axis in range(3):
+        strips = sweep.strips(axis, -12.03, 1.97, 14, CHORD_MM)
+        u_axis, v_axis = [a for a in range(3) if a != axis]
+        for i in range(strips.planes):
+            points = rng.uniform(-8.0, 10.0, (SAMPLES, 3))
+            points[:, axis] = -12.03 + (strips.first + i + 0.5) * 1.97
+            outline = strips.outline(i)
+            inside = np.zeros(SAMPLES, dtype=bool)
+            if outline is not None:
+                inside = shapely.contains_xy(shapely.Polygon(outline), points[:, u_axis], points[:, v_axis])
+            assert not np.any(in_sweep(shape, start, end, points, 0.0) & ~inside)
+            assert not np.any(inside & ~in_sweep(shape, start, end, points, 2.5 * CHORD_MM + between))
+
+
+@pytest.mark.parametrize("move", MOVES)
+@pytest.mark.parametrize("kind", SHAPES)
+def test_points_in_the_sweep_are_cleared_and_others_are_not(kind: str, move: tuple[float, float, float]) -> None:
+    shape = SHAPES[kind]
+    rng = np.random.default_rng(6)
+    start = rng.uniform(-1.0, 1.0, 3)
+    end = start + np.array(move)
+    between = np.linalg.norm(move) / (POSITIONS - 1)
+    points = rng.uniform((-6.0, -6.0, -4.0), (8.0, 8.0, 9.0), (SAMPLES, 3))
+    left = np.ones(SAMPLES, dtype=bool)
+    clear_swept(points, left, [Sweep(Body.of(shape), start, end)], 0.0)
+    assert not np.any(left & in_sweep(shape, start, end, points, -1e-9))
+    assert not np.any(~left & ~in_sweep(shape, start, end, points, 1e-9 + between))
+
+
+def test_volume_of_a_ball_sweep_is_the_closed_form() -> None:
+    """Ball R4 swept 10 mm sideways, up to the height of its centre: half a cylinder and two quarter spheres."""
+    shape = tool_shape("ball", 8.0, 4.0)
+    sweep = Sweep(Body.of(shape, chord_mm=1e-4), np.zeros(3), np.array([6.0, 8.0, 0.0]))
+    exact = np.pi / 2.0 * 16.0 * 10.0 + 2.0 / 3.0 * np.pi * 64.0
+    for axis in range(3):
+        strips = sweep.strips(axis, -10.0, 0.05, 600, 1e-4)
+        outlines = [strips.outline(i) for i in range(strips.planes)]
+        area = sum(shapely.Polygon(o).area for o in outlines if o is not None)
+        assert area * 0.05 == pytest.approx(exact, rel=3e-4)
+
+
+def test_a_tool_exactly_on_a_plane_is_cut_by_it() -> None:
+    """The tip's plane and the top's plane are planes of the slices: the sections are there or empty, never wrong."""
+    sweep = Sweep(Body.of(SHAPES["flat"], chord_mm=CHORD_MM), np.zeros(3), np.array([1.0, 0.0, 0.0]))
+    strips = sweep.strips(2, -0.5, 1.0, 12, CHORD_MM)
+    areas = [0.0 if (o := strips.outline(i)) is None else shapely.Polygon(o).area for i in range(strips.planes)]
+    assert strips.first == 0
+    assert areas == pytest.approx([9.0 * np.pi + 6.0] * 6, rel=1e-3)
+
+
+def test_a_body_standing_over_the_tip_is_moved_up() -> None:
+    shank = ToolShape(disc_mm=2.0, corner_mm=0.0, height_mm=5.0)
+    sweep = Sweep(Body.of(shank, above_tip_mm=10.0), np.zeros(3), np.zeros(3))
+    low, high = sweep.bounds_mm
+    assert low.tolist() == [-2.0, -2.0, 10.0]
+    assert high.tolist() == [2.0, 2.0, 15.0]
+    left = np.ones(3, dtype=bool)
+    clear_swept(np.array([(0.0, 0.0, 9.0), (0.0, 1.0, 12.0), (0.0, 0.0, 16.0)]), left, [sweep], 0.0)
+    assert left.tolist() == [True, False, True]
