@@ -108,6 +108,8 @@ class Engager:
             self._points,
             self._places,
         )
+        radius = self._shape.max_radius_mm
+        workpiece.prepare(tip_mm - np.array([radius, radius, 0.0]), tip_mm + np.array([radius, radius, reach]))
         places = self._places[:count]
         inside = self._in_material(self._points[:count], workpiece, pending)
         if not inside.any():

@@ -65,11 +65,16 @@ class TriSlices(ABC):
     def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
         """For each point count the families whose nearest plane has material there, stopping at ``enough``.
 
+        The box that holds the points must have been made ready by `prepare`.
+
         Args:
             points_mm: shape (n, 3).
             enough: 1 where a single family decides, 2 for a majority of the three.
             votes: shape (n,), starts at 0; at least ``enough`` on return where the point is in material.
         """
+
+    def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
+        """Make the planes inside a box ready to be asked for points."""
 
     def area_mm2(self, axis: int, k: int) -> float:
         """Area of material on one plane."""
@@ -82,6 +87,8 @@ class TriSlices(ABC):
     def contains(self, points_mm: FloatArray, axis: int) -> NDArray[np.bool_]:
         """Whether points (n, 3) lie in material on the nearest plane of a family; False more than half a pitch off."""
         votes = np.zeros(len(points_mm), dtype=np.int8)
+        if len(points_mm):
+            self.prepare(points_mm.min(axis=0), points_mm.max(axis=0))
         self._vote(np.ascontiguousarray(points_mm), axis, 0, 0, votes)
         return votes > 0
 
@@ -121,7 +128,7 @@ class CellSlices(TriSlices):
         return self._families[axis].crossings(k, u_mm)
 
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
-        """Build the planes inside a box, so that points in it can be asked for; planes not built hold nothing."""
+        """See `TriSlices.prepare`: planes are built when first needed; those that are not built hold nothing."""
         for axis, family in enumerate(self._families):
             pitch = self.pitch_mm[axis]
             first = int(np.floor((low_mm[axis] - self.low_mm[axis]) / pitch))
@@ -130,7 +137,6 @@ class CellSlices(TriSlices):
 
     def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
         """See `TriSlices.count_votes`; at most as many families are asked as it takes to decide."""
-        self.prepare(points_mm.min(axis=0), points_mm.max(axis=0))
         for asked, axis in enumerate((0, 1, 2)):
             self._vote(points_mm, axis, enough - (3 - asked), enough - 1, votes)
 
