@@ -108,7 +108,7 @@ def test_an_exact_retrace_cuts_next_to_nothing(kind: str, angle_deg: float) -> N
             if found is not None:
                 load = model.forces(REVOLUTION, 1, feed, 0.1, found)
                 assert found.summary.removal_rate_mm3_s < 0.006 * fresh.removal_rate_mm3_s
-                assert np.linalg.norm(load[:, :3].mean(axis=0)) < 0.03 * np.linalg.norm(fresh_load[:, :3].mean(axis=0))
+                assert np.linalg.norm(load[:, :3].mean(axis=0)) < 0.05 * np.linalg.norm(fresh_load[:, :3].mean(axis=0))
 
 
 def test_pending_sweeps_count_as_cut() -> None:
