@@ -1,0 +1,159 @@
+"""G2 and G3: centre, sense and turns of an arc from its words, in any of the three planes.
+
+Each plane's two axes are taken in the order of `PLANE_AXES` (XY, ZX, YZ), which makes a right-handed frame with the
+plane's normal; G3 is counter-clockwise seen against that normal in all three.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from gcode.actions import Result
+from gcode.blocks import Word
+from gcode.dialects import ArcTolerance
+from gcode.errors import GcodeError
+from gcode.events import PLANE_AXES, ArcMotion, Point
+from gcode.frame import SAME_PLACE_MM, moved_to, programmed_end, require_feed, settled, work_zero
+from gcode.modal import Command
+from gcode.state import State
+
+_CENTRE_LETTERS = "IJK"
+_TURNS: Mapping[str, int] = {"G2": -1, "G3": 1}
+_PLANE_NAMES: Mapping[int, str] = {17: "XY", 18: "ZX", 19: "YZ"}
+
+
+def arc(state: State, command: Command) -> Result:
+    """The arc or helix that a block makes while G2 or G3 is active.
+
+    Raises:
+        GcodeError: without a feed, without a centre or with two, with a centre word of another plane, with an R too
+            small to reach, and where the radii at the two ends do not agree.
+    """
+    require_feed(state, command)
+    start, end = state.position_mm, programmed_end(state, command)
+    centre_words = {letter: command.words[letter] for letter in _CENTRE_LETTERS if letter in command.words}
+    radius = command.words.get("R")
+    if radius is not None and centre_words:
+        problem = f"{radius.text} beside {', '.join(w.text for w in centre_words.values())}"
+        raise command.block.error(radius, "arc-two-centres", problem, "a radius R, or a centre by I, J, K")
+    if radius is not None:
+        centre = _centre_from_radius(state, command, end, radius)
+    elif centre_words:
+        centre = _centre_from_words(state, command, end, centre_words)
+    else:
+        problem = f"{state.modes.motion} without a centre"
+        raise command.block.error(None, "arc-without-centre", problem, "I, J, K or R")
+    return _arc_motion(settled(state, command), command, _closed(state, start, end), centre)
+
+
+def _arc_motion(state: State, command: Command, end: Point, centre: Point) -> Result:
+    event = ArcMotion(
+        place=command.block.place,
+        state=state.machine,
+        start_mm=state.position_mm,
+        end_mm=end,
+        centre_mm=centre,
+        plane=state.machine.plane,
+        turns=_TURNS[state.modes.motion],
+        feed_mm_min=state.modes.feed_mm_min,
+    )
+    return moved_to(state, end), (event,)
+
+
+def _closed(state: State, start: Point, end: Point) -> Point:
+    """`end`, put exactly over `start` where rounding alone parts them: then the arc is a full turn, not none."""
+    first, second, normal = PLANE_AXES[state.machine.plane]
+    if math.hypot(end[first] - start[first], end[second] - start[second]) > SAME_PLACE_MM:
+        return end
+    closed = list(start)
+    closed[normal] = end[normal]
+    return (closed[0], closed[1], closed[2])
+
+
+def _centre_from_words(state: State, command: Command, end: Point, words: Mapping[str, Word]) -> Point:
+    """Centre from I, J, K, checked against both ends."""
+    first, second, normal = PLANE_AXES[state.machine.plane]
+    if _CENTRE_LETTERS[normal] in words:
+        word = words[_CENTRE_LETTERS[normal]]
+        expected = f"{_CENTRE_LETTERS[first]} and {_CENTRE_LETTERS[second]}"
+        raise command.block.error(word, "arc-plane", f"{word.text} in an arc of {_plane(state)}", expected)
+    if state.modes.absolute_centres and len(words) < 2:
+        problem = f"{next(iter(words.values())).text} alone as an absolute arc centre"
+        expected = f"both {_CENTRE_LETTERS[first]} and {_CENTRE_LETTERS[second]}"
+        raise command.block.error(next(iter(words.values())), "arc-centre-incomplete", problem, expected)
+    centre = _centre(state, command, words, absolute=state.modes.absolute_centres)
+    radii = _radii(state, end, centre)
+    if max(radii) <= SAME_PLACE_MM:
+        raise command.block.error(None, "arc-zero-radius", "an arc of radius 0", "a centre away from the start")
+    if not _tolerance(state).accepts(*radii):
+        raise _radius_error(state, command, end, words, radii)
+    return centre
+
+
+def _centre(state: State, command: Command, words: Mapping[str, Word], *, absolute: bool) -> Point:
+    """The centre that I, J, K name; along the plane's normal it lies level with the start."""
+    start = state.position_mm
+    origin = work_zero(state, command) if absolute else start
+    centre = list(start)
+    for axis in PLANE_AXES[state.machine.plane][:2]:
+        word = words.get(_CENTRE_LETTERS[axis])
+        centre[axis] = origin[axis] + (word.value * state.modes.unit_mm if word else 0.0)
+    return (centre[0], centre[1], centre[2])
+
+
+def _radii(state: State, end: Point, centre: Point) -> tuple[float, float]:
+    """Distances in the plane of the arc's start and end from its centre, mm."""
+    first, second, _ = PLANE_AXES[state.machine.plane]
+    start = state.position_mm
+    return (
+        math.hypot(start[first] - centre[first], start[second] - centre[second]),
+        math.hypot(end[first] - centre[first], end[second] - centre[second]),
+    )
+
+
+def _radius_error(
+    state: State, command: Command, end: Point, words: Mapping[str, Word], radii: tuple[float, float]
+) -> GcodeError:
+    """The error for radii that do not agree; it says so where the other meaning of I, J, K would fit."""
+    now = "absolute" if state.modes.absolute_centres else "incremental"
+    other = "incremental" if state.modes.absolute_centres else "absolute"
+    problem = (
+        f"the arc's radius is {radii[0]:.4f} mm at its start and {radii[1]:.4f} mm at its end, "
+        f"with {now} centre {' '.join(word.text for word in words.values())}"
+    )
+    alternative = _radii(state, end, _centre(state, command, words, absolute=not state.modes.absolute_centres))
+    expected = f"radii within {_tolerance(state).absolute_mm:g} mm of each other"
+    if _tolerance(state).accepts(*alternative) and min(alternative) > SAME_PLACE_MM:
+        switch = "G91.1" if state.modes.absolute_centres else "G90.1"
+        expected += f"; {other} arc centres ({switch}, or the setting arc_centres) would fit"
+    return command.block.error(next(iter(words.values())), "arc-radius", problem, expected)
+
+
+def _tolerance(state: State) -> ArcTolerance:
+    given = state.control.settings.arc_tolerance_mm
+    return state.control.dialect.arc_tolerance if given is None else ArcTolerance(absolute_mm=given)
+
+
+def _centre_from_radius(state: State, command: Command, end: Point, word: Word) -> Point:
+    """Centre from R: R > 0 is the arc of at most half a turn, R < 0 the longer one."""
+    first, second, _ = PLANE_AXES[state.machine.plane]
+    start, radius = state.position_mm, word.value * state.modes.unit_mm
+    along, across = end[first] - start[first], end[second] - start[second]
+    chord = math.hypot(along, across)
+    if chord <= SAME_PLACE_MM:
+        problem = f"{word.text} with the end of the arc at its start"
+        raise command.block.error(word, "arc-no-chord", problem, "a centre by I, J, K for a full circle")
+    if chord / 2.0 - abs(radius) > state.control.dialect.radius_tolerance_mm:
+        problem = f"{word.text} is too small for an arc over {chord:.4f} mm"
+        raise command.block.error(word, "arc-radius-too-small", problem, f"at least {chord / 2.0:.4f} mm in size")
+    height = math.sqrt(max(radius * radius - chord * chord / 4.0, 0.0))
+    side = math.copysign(1.0, radius) * _TURNS[state.modes.motion]
+    centre = list(start)
+    centre[first] = start[first] + along / 2.0 - side * height * across / chord
+    centre[second] = start[second] + across / 2.0 + side * height * along / chord
+    return (centre[0], centre[1], centre[2])
+
+
+def _plane(state: State) -> str:
+    return f"the {_PLANE_NAMES[state.machine.plane]} plane (G{state.machine.plane})"

@@ -1,0 +1,149 @@
+"""The tables of G and M codes: which modal group each is of, what is done with it, and which words it takes.
+
+A rule is data. The interpreter looks codes up and never asks for one by an if-chain, so a dialect is these tables
+with its own rows put over them (see `dialects`), and a code that stands in no table is refused as unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypeAlias
+
+
+class Status(Enum):
+    """What becomes of a code."""
+
+    EXECUTED = "executed"
+    NEUTRAL = "cancels or sets what always holds here, so it changes nothing"
+    NOTICE = "has no motion here; a notice says so"
+    REFUSED = "refused by name"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeRule:
+    """One G or M code of a dialect.
+
+    Attributes:
+        code: canonical name, e.g. ``G1``, ``G54.1``.
+        groups: modal groups; two codes that share one cannot stand in one block.
+        status: what becomes of it.
+        phase: step in the order of execution of a block (`Dialect.order`); empty where nothing is to be done.
+        letters: letters of the words that it takes.
+        takes_axes: True where its X, Y, Z are its own, so that the block has no motion besides.
+        meaning: what it is, in words, for messages and reference tables.
+    """
+
+    code: str
+    groups: tuple[str, ...]
+    status: Status
+    phase: str
+    letters: str
+    takes_axes: bool
+    meaning: str
+
+
+Table: TypeAlias = Mapping[str, CodeRule]
+
+
+def rules(
+    groups: str,
+    status: Status,
+    meanings: Mapping[str, str],
+    *,
+    phase: str = "",
+    letters: str = "",
+    takes_axes: bool = False,
+) -> dict[str, CodeRule]:
+    """Rows of a table that share everything but code and meaning; `groups` are names with blanks between."""
+    return {
+        code: CodeRule(
+            code=code,
+            groups=tuple(groups.split()),
+            status=status,
+            phase=phase,
+            letters=letters,
+            takes_axes=takes_axes,
+            meaning=meaning,
+        )
+        for code, meaning in meanings.items()
+    }
+
+
+def executed(groups: str, phase: str, meanings: Mapping[str, str], letters: str = "") -> dict[str, CodeRule]:
+    """Rows of codes that `phase` executes."""
+    return rules(groups, Status.EXECUTED, meanings, phase=phase, letters=letters)
+
+
+def neutral(groups: str, meanings: Mapping[str, str]) -> dict[str, CodeRule]:
+    """Rows of codes that ask for what always holds here."""
+    return rules(groups, Status.NEUTRAL, meanings)
+
+
+def noticed(groups: str, meanings: Mapping[str, str], letters: str = "") -> dict[str, CodeRule]:
+    """Rows of codes that have no motion."""
+    return rules(groups, Status.NOTICE, meanings, phase="notice", letters=letters)
+
+
+def refused(groups: str, meanings: Mapping[str, str]) -> dict[str, CodeRule]:
+    """Rows of codes that are known and not supported."""
+    return rules(groups, Status.REFUSED, meanings)
+
+
+#: What every dialect here shares.
+COMMON: Table = {
+    **executed("motion", "modes", {"G0": "rapid positioning", "G1": "straight feed"}, "XYZ"),
+    **executed("motion", "modes", {"G2": "clockwise arc", "G3": "counter-clockwise arc"}, "XYZIJKR"),
+    **executed("plane", "modes", {"G17": "XY plane", "G18": "ZX plane", "G19": "YZ plane"}),
+    **executed("units", "modes", {"G20": "inch", "G21": "millimetre"}),
+    **executed("distance", "modes", {"G90": "absolute", "G91": "incremental"}),
+    **executed("arc-centre", "modes", {"G90.1": "absolute arc centres", "G91.1": "incremental arc centres"}),
+    **rules(
+        "one-shot",
+        Status.EXECUTED,
+        {"G28": "return to the reference point"},
+        phase="reference",
+        letters="XYZ",
+        takes_axes=True,
+    ),
+    **executed("one-shot", "", {"G53": "machine coordinates for one block"}),
+    **executed("length", "length", {"G43": "tool length offset"}, "H"),
+    **executed("length", "length", {"G49": "tool length offset cancel"}),
+    **executed("work-offset", "work_offset", {f"G{n}": f"work offset {n - 53}" for n in range(54, 60)}),
+    **executed("stop", "stop", {"M0": "program stop", "M1": "optional stop"}),
+    **executed("stop", "stop", {"M2": "program end", "M30": "program end"}),
+    **executed("spindle", "spindle_on", {"M3": "spindle clockwise", "M4": "spindle counter-clockwise"}),
+    **executed("spindle", "spindle_off", {"M5": "spindle stop"}),
+    **executed("tool-change", "tool_change", {"M6": "tool change"}),
+    **executed("mist", "coolant_on", {"M7": "mist coolant"}),
+    **executed("flood", "coolant_on", {"M8": "flood coolant"}),
+    **executed("mist flood", "coolant_off", {"M9": "coolant off"}),
+    **neutral("compensation", {"G40": "cutter compensation cancel"}),
+    **neutral("feed-mode", {"G94": "feed per minute"}),
+    **neutral("speed-mode", {"G97": "constant spindle speed"}),
+    **neutral("return-level", {"G98": "return to the initial level", "G99": "return to the R level"}),
+    **noticed("override", {"M48": "overrides on", "M49": "overrides off"}),
+    **refused("compensation", {"G41": "cutter compensation left", "G42": "cutter compensation right"}),
+    **refused("feed-mode", {"G93": "inverse time feed", "G95": "feed per revolution"}),
+    **refused("speed-mode", {"G96": "constant surface speed"}),
+    **refused("one-shot", {"G10": "offset data setting", "G30": "return to a second reference point"}),
+    **refused("one-shot", {"G52": "local coordinate system", "G92": "coordinate system setting"}),
+    **refused("call", {"M98": "subprogram call", "M99": "subprogram end"}),
+}
+
+#: Canned cycles, which FANUC keeps in a group of their own and LinuxCNC among the motions.
+CYCLES: Mapping[str, str] = {
+    "G73": "high-speed peck drilling cycle",
+    "G74": "left-hand tapping cycle",
+    "G76": "fine boring cycle",
+    "G81": "drilling cycle",
+    "G82": "drilling cycle with dwell",
+    "G83": "peck drilling cycle",
+    "G84": "tapping cycle",
+    "G85": "boring cycle",
+    "G86": "boring cycle with spindle stop",
+    "G87": "back boring cycle",
+    "G88": "boring cycle with manual retract",
+    "G89": "boring cycle with dwell",
+}
