@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +57,9 @@ class SlotRun:
             yield self.cut(index, t_s, x)
             index, t_s = index + 1, 0.2 + (i + 1) * self.step_mm * 60.0 / FEED_MM_MIN
             if (i + 1) % max(1, round(2.0 / self.step_mm)) == 0 and 0.0 <= x <= 60.0:
-                yield from (patch(k, x + self.step_mm, t_s) for k in range(4) if k * PATCH_MM <= x < (k + 1) * PATCH_MM + 2.0)
+                yield from (
+                    patch(k, x + self.step_mm, t_s) for k in range(4) if k * PATCH_MM <= x < (k + 1) * PATCH_MM + 2.0
+                )
         for k in range(4):
             yield patch(k, 60.0, t_s)
         yield NcEvent(t_s=t_s, nc_line=5, kind="block", text="N50 G0 X20 Y22 Z-1")
@@ -211,15 +214,13 @@ def slot_profile() -> FloatArray:
 def extruded(a: float, b: float, profile: FloatArray) -> list[FloatArray]:
     """Top, sides and bottom between two x."""
     ring = np.vstack([(0.0, -20.0), profile, (30.0, -20.0), (0.0, -20.0)])
-    return [
-        np.array([(a, *p), (b, *p), (b, *q), (a, *q)]) for p, q in zip(ring[:-1], ring[1:], strict=True)
-    ]
+    return [np.array([(a, *p), (b, *p), (b, *q), (a, *q)]) for p, q in pairwise(ring)]
 
 
 def wall(x: float, profile: FloatArray, side: float) -> list[FloatArray]:
     """The face x = const below a profile."""
     made = []
-    for (y0, z0), (y1, z1) in zip(profile[:-1], profile[1:], strict=True):
+    for (y0, z0), (y1, z1) in pairwise(profile):
         quad = np.array([(x, y0, -20.0), (x, y1, -20.0), (x, y1, z1), (x, y0, z0)])
         made.append(quad if side > 0.0 else quad[::-1])
     return made
@@ -229,7 +230,7 @@ def slot_end(x: float) -> list[FloatArray]:
     """The upright end of the slot."""
     made = []
     profile = slot_profile()
-    for (y0, z0), (y1, z1) in zip(profile[:-1], profile[1:], strict=True):
+    for (y0, z0), (y1, z1) in pairwise(profile):
         made.append(np.array([(x, y0, 0.0), (x, y1, 0.0), (x, y1, z1), (x, y0, z0)]))
     return made
 
@@ -241,7 +242,7 @@ def mesh(quads: list[FloatArray]) -> dict[str, NDArray[np.float32] | NDArray[np.
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = normals / np.where(length > 0.0, length, 1.0)
     first = 4 * np.arange(len(corners))[:, None]
-    triangles = np.concatenate([first + (0, 1, 2), first + (0, 2, 3)])
+    triangles = np.concatenate([first + np.array(corner) for corner in ((0, 1, 2), (0, 2, 3))])
     return {
         "vertices_mm": corners.reshape(-1, 3).astype(np.float32),
         "normals": np.repeat(normals, 4, axis=0).astype(np.float32),

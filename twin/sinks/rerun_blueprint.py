@@ -19,8 +19,6 @@ from twin.sinks import rerun_layout as layout
 
 #: Half of what the close view of the forces shows around the cursor.
 _CLOSE_S = 0.04
-#: Direction from the part to the eye, in half diagonals of the stock.
-_EYE = (-1.15, -1.75, 1.35)
 
 _UP_TO_CURSOR = [
     rr.VisibleTimeRange(name, start=rr.TimeRangeBoundary.infinite(), end=rr.TimeRangeBoundary.cursor_relative())
@@ -35,15 +33,19 @@ def blueprint(stock_bounds_mm: FloatArray | None = None) -> rrb.Blueprint:
         stock_bounds_mm: shape (2, 3), what the camera looks at; None leaves the camera to the viewer.
     """
     return rrb.Blueprint(
-        rrb.Vertical(
-            rrb.Horizontal(_part(stock_bounds_mm), rrb.Tabs(_blocks(), _summary()), column_shares=[7, 3]),
-            rrb.Horizontal(
+        rrb.Horizontal(
+            rrb.Vertical(
+                _part(stock_bounds_mm),
                 _curves("Cutting force on the tool", layout.FORCES),
-                _curves("Force around the cursor, ±40 ms", layout.FORCES, close=True),
-                column_shares=[7, 3],
+                _curves("Spindle torque", (layout.TORQUE,)),
+                row_shares=[11, 5, 3],
             ),
-            _curves("Spindle torque", (layout.TORQUE,)),
-            row_shares=[11, 5, 3],
+            rrb.Vertical(
+                rrb.Tabs(_blocks(), _summary()),
+                _curves("Force around the cursor, ±40 ms", layout.FORCES, close=True),
+                row_shares=[11, 8],
+            ),
+            column_shares=[7, 3],
         ),
         rrb.TimePanel(state="collapsed", timeline=layout.TIME, play_state="following"),
         rrb.BlueprintPanel(state="collapsed"),
@@ -83,7 +85,7 @@ def _grid(stock_bounds_mm: FloatArray | None) -> rrb.LineGrid3D:
     """A grid in the plane of the stock's lower face."""
     floor = 0.0 if stock_bounds_mm is None else float(stock_bounds_mm[0, 2])
     plane = rr.encodings.Plane3D((0.0, 0.0, 1.0), floor)
-    return rrb.LineGrid3D(visible=True, plane=plane, spacing=10.0, stroke_width=0.75, color=(120, 128, 140, 60))
+    return rrb.LineGrid3D(visible=True, plane=plane, spacing=10.0, stroke_width=0.75, color=(120, 128, 140, 40))
 
 
 def _eye(stock_bounds_mm: FloatArray) -> rrb.EyeControls3D:
@@ -91,7 +93,7 @@ def _eye(stock_bounds_mm: FloatArray) -> rrb.EyeControls3D:
     low, high = stock_bounds_mm
     reach = 0.5 * float(((high - low) ** 2).sum()) ** 0.5
     target = 0.5 * (low + high) + np.array((0.0, 0.0, 0.1 * reach))
-    return rrb.EyeControls3D(position=target + reach * np.array(_EYE), look_target=target, eye_up=(0, 0, 1))
+    return rrb.EyeControls3D(position=target + reach * np.array(layout.EYE), look_target=target, eye_up=(0, 0, 1))
 
 
 def _blocks() -> rrb.TextLogView:
@@ -122,7 +124,7 @@ def _curves(name: str, series: tuple[layout.Series, ...], *, close: bool = False
         name=name,
         plot_legend=rrb.PlotLegend(visible=not close, corner=rrb.Corner2D.RightTop),
         time_ranges=around if close else None,
-        axis_x=None if close else rrb.TimeAxis(link=rrb.LinkAxis.LinkToGlobal),
+        axis_x=None if close else rrb.TimeAxis(link="LinkToGlobal"),
         overrides={layout.ARCHIVE_FORCE: [_archive_curve(s) for s in series]},
     )
 

@@ -15,6 +15,7 @@ TIME, STEP, NC_LINE = "machine_time", "step", "nc_line"
 TIMELINES = (TIME, STEP, NC_LINE)
 
 TOOL = "machine/tool"
+PATH = "machine/path"
 CUT_PATH = "machine/path/cut"
 RAPID_PATH = "machine/path/rapid"
 COLLISIONS = "machine/collisions"
@@ -55,12 +56,16 @@ SERIES = (*FORCES, TORQUE)
 ARCHIVE_FORCE = "force"
 ARCHIVE_FORCE_COMPONENT = "twin.CuttingForce:message"
 
+#: Direction from the stock to the eye, in half diagonals of the stock.
+EYE = (-0.95, -1.45, 1.1)
+
 PART_COLOR: Rgb = (168, 178, 192)
 TOOL_COLOR = (226, 188, 106, 150)
 STOCK_COLOR: Rgb = (120, 128, 140)
 RAPID_COLOR: Rgb = (130, 130, 136)
+TEXT_COLOR: Rgb = (220, 224, 230)
 AIR_COLOR: Rgb = (176, 176, 182)
-COLLISION_COLOR: Rgb = (255, 48, 80)
+COLLISION_COLOR: Rgb = (255, 92, 112)
 
 #: Colour of a line of the log, by kind of event; the level is what the viewer filters by.
 EVENT_STYLE: dict[str, tuple[str, Rgb]] = {
