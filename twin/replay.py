@@ -15,8 +15,10 @@ from typing import Self
 
 import numpy as np
 
+from gcode.dialects import dialect_named
 from gcode.events import Block, Event, ToolChange
-from gcode.interpret import interpret_file
+from gcode.interpret import interpret
+from gcode.source import read_program
 from twin.arrays import FloatArray
 from twin.cutting.engagement import NO_ENGAGEMENT, EngagementMap
 from twin.errors import CollisionError, ReplayError
@@ -77,7 +79,13 @@ class Replay:
         yield self.summary(complete=True)
 
     def _program(self) -> Iterator[Move | Event]:
-        events = interpret_file(self.job.program.file, self._settings, dialect=self.job.program.dialect)
+        program = self.job.program
+        events = interpret(
+            read_program(program.file),
+            file=str(program.file),
+            dialect=dialect_named(program.dialect),
+            settings=self._settings,
+        )
         return moves_from_nc(
             events,
             origin_mm=np.array(self.job.machine.offsets[self.job.stock.wcs]),

@@ -29,9 +29,9 @@ class Tolerance:
 
     @classmethod
     def for_pitch(cls, pitch_mm: float) -> Tolerance:
-        """The values used for slices at a pitch: 1 um chords at 0.1 mm."""
+        """The values used for slices at a pitch: 0.5 um chords at 0.1 mm."""
         return cls(
-            chord_mm=0.01 * pitch_mm,
+            chord_mm=0.005 * pitch_mm,
             depth_mm=1e-6 * pitch_mm,
             contact_mm3=pitch_mm**3,
             clearance_mm=0.1 * pitch_mm,

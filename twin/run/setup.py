@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from gcode.interpret import MachineSettings
+from gcode.settings import MachineSettings
 from twin.arrays import FloatArray, frozen
 from twin.cutting.coefficients import CuttingCoefficients
 from twin.cutting.engagement import Engager

@@ -1,0 +1,136 @@
+"""Modal groups, word ownership and the tables themselves; a refused block leaves the state whole."""
+
+from __future__ import annotations
+
+import pytest
+
+from gcode.codes import Status
+from gcode.dialects import DIALECTS, Dialect, dialect_named
+from gcode.errors import GcodeError, Place
+from gcode.events import Block, LinearMotion, Notice
+from gcode.interpret import step
+from gcode.parse import parse_line
+from gcode.phases import PHASES
+from gcode.settings import MachineSettings
+from gcode.state import State, initial_state
+
+ALL = pytest.mark.parametrize("dialect", DIALECTS.values(), ids=DIALECTS.keys())
+
+
+def run_block(state: State, text: str) -> State:
+    return step(state, parse_line(Place(file="t.nc", line=1, text=text)))[0]
+
+
+@ALL
+def test_every_executed_code_has_a_phase_that_exists(dialect: Dialect) -> None:
+    for rule in dialect.codes.values():
+        if rule.status is Status.EXECUTED and rule.code != "G53":
+            assert rule.phase in dialect.order, rule.code
+        if rule.status in (Status.NEUTRAL, Status.REFUSED):
+            assert rule.phase == "", rule.code
+
+
+@ALL
+def test_the_order_of_execution_names_every_phase_once(dialect: Dialect) -> None:
+    assert sorted(dialect.order) == sorted(PHASES)
+
+
+@ALL
+def test_tables_cannot_be_changed(dialect: Dialect) -> None:
+    with pytest.raises(TypeError):
+        dialect.codes["G1"] = dialect.codes["G0"]  # type: ignore[index]
+
+
+@ALL
+def test_every_refused_code_says_its_name(dialect: Dialect, refusal) -> None:
+    for rule in dialect.codes.values():
+        if rule.status is Status.REFUSED:
+            error = refusal(f"N1 {rule.code}", dialect.name)
+            assert str(error) == f"t.nc:1:4: {rule.code} ({rule.meaning}) is not supported [unsupported-code]"
+
+
+@ALL
+def test_every_code_without_motion_gives_a_notice(dialect: Dialect, run) -> None:
+    for rule in dialect.codes.values():
+        if rule.status is Status.NOTICE:
+            notices = [e for e in run(f"{rule.code}\nM2", dialect.name) if isinstance(e, Notice)]
+            text = f"{rule.code} ({rule.meaning}) has no effect on the simulated motion"
+            assert [(n.code, n.text) for n in notices] == [("no-motion", text)]
+
+
+@ALL
+def test_two_codes_of_a_group_are_refused(dialect: Dialect, refusal) -> None:
+    usable = [r for r in dialect.codes.values() if r.status is not Status.REFUSED]
+    for first in usable:
+        for second in usable:
+            shared = [group for group in second.groups if group in first.groups]
+            if shared:
+                error = refusal(f"{first.code} {second.code}", dialect.name)
+                assert str(error) == (
+                    f"t.nc:1:{len(first.code) + 2}: {first.code} and {second.code} are both of the modal group "
+                    f"{shared[0]}; expected one code of a group in a block [group-conflict]"
+                )
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("G777", "t.nc:1:1: G777 is no code of the fanuc dialect [unknown-code]"),
+        ("G0 M123", "t.nc:1:4: M123 is no code of the fanuc dialect [unknown-code]"),
+        ("G1.5", "t.nc:1:1: G1.5 is no code of the fanuc dialect [unknown-code]"),
+        ("G-1", "t.nc:1:1: G-1 is no code of the fanuc dialect [unknown-code]"),
+        ("G41 D1", "t.nc:1:1: G41 (cutter compensation left) is not supported [unsupported-code]"),
+        ("G81 X1 Z-1 R1 F1", "t.nc:1:1: G81 (drilling cycle) is not supported [unsupported-code]"),
+        ("M98 P10 L3", "t.nc:1:1: M98 (subprogram call) is not supported [unsupported-code]"),
+        ("G65 P10", "t.nc:1:1: G65 (macro call) is not supported [unsupported-code]"),
+        ("G0 A90", "t.nc:1:4: A90: A is a rotary axis, which is not supported [unsupported-word]"),
+        ("G0 X1 U5", "t.nc:1:7: U5: U is a parallel axis, which is not supported [unsupported-word]"),
+        ("G1 X1 ,C2 F1", "t.nc:1:7: ,C2: ,C is a corner chamfer, which is not supported [unsupported-word]"),
+        ("G0 X1 P5", "t.nc:1:7: P5 belongs to no code in this block or active [unused-word]"),
+        ("G0 X1 D5", "t.nc:1:7: D5 belongs to no code in this block or active [unused-word]"),
+        ("G0 X1 I5", "t.nc:1:7: I5 belongs to no code in this block or active [unused-word]"),
+        ("G4 X1 Y1", "t.nc:1:7: Y1 belongs to no code in this block or active [unused-word]"),
+        ("N1.5", "t.nc:1:1: N1.5 is no whole number of 0 or more; expected N0, 1, 2... [bad-value]"),
+        ("T-1", "t.nc:1:1: T-1 is no whole number of 0 or more; expected T0, 1, 2... [bad-value]"),
+        ("F-1", "t.nc:1:1: F-1 is negative; expected F of 0 or more [bad-value]"),
+        ("S-1", "t.nc:1:1: S-1 is negative; expected S of 0 or more [bad-value]"),
+        ("O1\nO2", "t.nc:2:1: O2 begins another program before the end of O1; expected M2, M30 or % before it "
+         "[program-number]"),
+    ],
+)  # fmt: skip
+def test_refusals(text: str, message: str, refusal) -> None:
+    assert str(refusal(text)) == message
+
+
+def test_linuxcnc_needs_a_motion_code_before_axis_words(refusal, motions) -> None:
+    message = "t.nc:1:1: X1 without a motion code; expected G0, G1, G2 or G3 [axis-without-motion]"
+    assert str(refusal("X1", "linuxcnc")) == message
+    assert refusal("G0X1\nG80\nX2", "linuxcnc").place.line == 3
+    assert motions("X1")[0].rapid
+
+
+def test_fanuc_keeps_the_motion_code_over_g80(motions) -> None:
+    assert [m.rapid for m in motions("G1 F1 X1\nG80\nX2\nG0 G80 X3")] == [False, False, True]
+
+
+def test_two_takers_of_the_axis_words(refusal, motions) -> None:
+    expected = "t.nc:1:1: G28 and G0 both take the axis words; expected one of them in a block [axis-conflict]"
+    assert str(refusal("G0 G28 X1", "linuxcnc")) == expected
+    moved = motions("G1 G28 Z10. F5.\nX1", home_mm=(0, 0, 50))
+    assert [(m.end_mm, m.rapid) for m in moved] == [((0, 0, 10), True), ((0, 0, 50), True), ((1, 0, 50), False)]
+
+
+@pytest.mark.parametrize(
+    "text", ["G20 G91 G18 F5. S9 T3 G777", "G55 X1", "G1 G20 X1", "S5 M3 G43 H9", "T1 M6 G2 X1 F1"]
+)
+def test_a_refused_block_leaves_the_state_whole(text: str) -> None:
+    before = initial_state(dialect_named("fanuc"), MachineSettings())
+    twin = initial_state(dialect_named("fanuc"), MachineSettings())
+    with pytest.raises(GcodeError):
+        run_block(before, text)
+    assert before == twin
+
+
+def test_each_block_with_words_is_told_before_its_events(run) -> None:
+    events = run("%\nO1(A)\n\n(comment)\nG0 X1\nM30\n%")
+    assert [(type(e), e.place.line) for e in events][:3] == [(Block, 2), (Block, 5), (LinearMotion, 5)]

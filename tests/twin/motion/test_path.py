@@ -1,0 +1,113 @@
+"""Lines, arcs and helices divided into chords; NC events turned into moves of the tool tip."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from gcode.errors import Place
+from gcode.events import ArcMotion, Dwell, LinearMotion, MotionState, ToolChange
+from twin.motion.from_nc import moves_from_nc
+from twin.motion.path import Arc, Move
+
+PLACE = Place(file="t.nc", line=7)
+
+
+def arc_move(plane: int, sweep: float, rise: float, radius: float = 5.0) -> Move:
+    i, j, k = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}[plane]
+    centre, start, end = np.full(3, 2.0), np.full(3, 2.0), np.full(3, 2.0)
+    start[i] += radius
+    end[i] += radius * math.cos(sweep)
+    end[j] += radius * math.sin(sweep)
+    end[k] += rise
+    arc = Arc(centre_mm=centre, plane=plane, sweep_rad=sweep)
+    return Move(
+        start_mm=start,
+        end_mm=end,
+        arc=arc,
+        duration_s=1.0,
+        feed_mm_min=1.0,
+        spindle_rpm=0.0,
+        tool=1,
+        rapid=False,
+        nc_line=1,
+    )
+
+
+@pytest.mark.parametrize("plane", [17, 18, 19])
+@pytest.mark.parametrize("sweep", [math.pi / 2, -math.pi / 2, 2 * math.pi, -5 * math.pi])
+@pytest.mark.parametrize("rise", [0.0, -3.0])
+def test_chords_of_an_arc_stay_within_tolerance_and_step(plane: int, sweep: float, rise: float) -> None:
+    move = arc_move(plane, sweep, rise)
+    assert move.length_mm == pytest.approx(math.hypot(5.0 * sweep, rise))
+    corners = move.corners_mm(0.5, 0.002)
+    assert np.array_equal(corners[0], move.start_mm)
+    assert np.array_equal(corners[-1], move.end_mm)
+    pieces = np.diff(corners, axis=0)
+    assert np.linalg.norm(pieces, axis=1).max() <= 0.5 + 1e-9
+    middle = 0.5 * (corners[:-1] + corners[1:])
+    i, j, _ = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}[plane]
+    assert 5.0 - np.hypot(middle[:, i] - 2.0, middle[:, j] - 2.0).min() <= 0.002 + 1e-9
+    turn = np.cross(pieces[0], pieces[1])[{17: 2, 18: 1, 19: 0}[plane]]
+    assert math.copysign(1.0, turn) == math.copysign(1.0, sweep)
+
+
+def test_a_straight_move_is_one_piece() -> None:
+    move = Move(
+        start_mm=np.zeros(3),
+        end_mm=np.array([3.0, 4.0, 0.0]),
+        duration_s=1.0,
+        feed_mm_min=300.0,
+        spindle_rpm=0.0,
+        tool=1,
+        rapid=False,
+        nc_line=1,
+    )
+    assert len(move.corners_mm(0.1, 0.001)) == 2
+    assert move.length_mm == 5.0
+
+
+def moves(*events: LinearMotion | ArcMotion | Dwell | ToolChange) -> list[object]:
+    return list(
+        moves_from_nc(
+            events,
+            origin_mm=np.array([100.0, 50.0, -200.0]),
+            tool_length_mm={1: 80.0},
+            rapid_mm_min=30000.0,
+        )
+    )
+
+
+def test_the_tip_is_the_controlled_point_with_the_right_offset_and_lower_without() -> None:
+    with_offset = MotionState(tool=1, length_offset_mm=80.0, spindle_rpm=1000.0, spindle_direction=-1)
+    without = MotionState(tool=1)
+    line = {"place": PLACE, "rapid": False, "feed_mm_min": 300.0}
+    first, second = moves(
+        LinearMotion(state=with_offset, start_mm=(100.0, 50.0, -190.0), end_mm=(110.0, 50.0, -190.0), **line),
+        LinearMotion(state=without, start_mm=(110.0, 50.0, -110.0), end_mm=(110.0, 60.0, -110.0), **line),
+    )
+    assert isinstance(first, Move)
+    assert isinstance(second, Move)
+    assert first.start_mm.tolist() == [0.0, 0.0, 10.0]
+    assert first.end_mm.tolist() == [10.0, 0.0, 10.0]
+    assert first.duration_s == pytest.approx(2.0)
+    assert first.spindle_rpm == -1000.0
+    assert first.nc_line == 7
+    assert second.start_mm.tolist() == [10.0, 0.0, 10.0]
+
+
+def test_rapids_take_the_rapid_rate_and_dwells_their_time() -> None:
+    state = MotionState(tool=1, length_offset_mm=80.0)
+    rapid = LinearMotion(
+        place=PLACE, state=state, start_mm=(0.0, 0.0, 0.0), end_mm=(0.0, 0.0, 50.0), rapid=True, feed_mm_min=0.0
+    )
+    first, second, third = moves(rapid, Dwell(place=PLACE, state=state, seconds=2.5), ToolChange(place=PLACE, tool=2))
+    assert isinstance(first, Move)
+    assert isinstance(second, Move)
+    assert first.rapid
+    assert first.duration_s == pytest.approx(0.1)
+    assert second.duration_s == 2.5
+    assert np.array_equal(second.start_mm, first.end_mm)
+    assert isinstance(third, ToolChange)
