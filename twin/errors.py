@@ -16,6 +16,10 @@ class JobError(TwinError):
         super().__init__("\n".join(f"{file}: {p}" for p in problems))
 
 
+class StockError(TwinError):
+    """A stock that has no extent, or cannot be sliced at the pitch asked for."""
+
+
 class MeshError(TwinError):
     """A triangle mesh that is no solid, or a file that is no mesh."""
 

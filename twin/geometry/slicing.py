@@ -1,0 +1,84 @@
+"""Plane sections of closed triangle meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+from twin.geometry import slicing_kernels as kernels
+from twin.geometry.clip import DECIMALS, union_nonzero
+from twin.geometry.region import Region
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshEdges:
+    """The edges of a triangle mesh.
+
+    Attributes:
+        ends: shape (e, 2), the vertices of each edge, lower number first.
+        sides: shape (m, 3), edge j of a triangle joins its corners j and j + 1.
+        forward, backward: shape (e,), how many triangles run along an edge from its lower to its higher vertex, and
+            the other way. A closed mesh with all triangles turned alike has as many of both everywhere.
+    """
+
+    ends: NDArray[np.int64]
+    sides: NDArray[np.int64]
+    forward: NDArray[np.int64]
+    backward: NDArray[np.int64]
+
+
+def mesh_edges(triangles: NDArray[np.int64]) -> MeshEdges:
+    """Number the edges of triangles, shape (m, 3), none with a corner twice."""
+    tails, tips = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    low, high = np.minimum(tails, tips), np.maximum(tails, tips)
+    width = int(triangles.max(initial=0)) + 1
+    keys, sides = np.unique(low * width + high, return_inverse=True)
+    forward = np.bincount(sides[tails < tips], minlength=len(keys))
+    return MeshEdges(
+        ends=np.column_stack((keys // width, keys % width)),
+        sides=sides.reshape(-1, 3).astype(np.int64),
+        forward=forward,
+        backward=np.bincount(sides, minlength=len(keys)) - forward,
+    )
+
+
+def mesh_sections(
+    vertices_mm: FloatArray,
+    triangles: NDArray[np.int64],
+    edges: MeshEdges,
+    axes: tuple[int, int, int],
+    planes_mm: FloatArray,
+) -> tuple[Region, ...]:
+    """Cut a closed mesh with planes.
+
+    A vertex on a plane counts as above it, so the section there is that of a plane a hair lower. Bodies
+    that overlap are united by non-zero winding.
+
+    Args:
+        vertices_mm: shape (n, 3).
+        triangles: shape (m, 3), counter-clockwise seen from outside.
+        edges: of these triangles; every edge as often forward as backward.
+        axes: the planes' normal axis and the in-plane axes u, v.
+        planes_mm: shape (k,), positions along the normal axis, increasing.
+
+    Returns:
+        One region a plane, vertices rounded to 1e-5 mm.
+    """
+    heights = np.ascontiguousarray(vertices_mm[:, axes[0]])
+    ranges = np.empty((len(triangles), 2), dtype=np.int64)
+    begins = kernels.plane_ranges(heights, triangles, planes_mm, ranges)
+    segments = np.empty((begins[-1], 2), dtype=np.int64)
+    mirrored = (axes[1] + 1) % 3 != axes[2]
+    kernels.fill_segments(heights, triangles, edges.sides, planes_mm, ranges, begins, mirrored, segments)
+    order = np.empty(len(segments), dtype=np.int64)
+    rings = kernels.chain_rings(segments, begins, len(edges.ends), order)
+    points = np.empty((len(segments), 2))
+    kernels.edge_points(vertices_mm, edges.ends, axes, planes_mm, rings, order, segments, points)
+    points = np.round(points, DECIMALS) + 0.0
+    found: list[list[FloatArray]] = [[] for _ in planes_mm]
+    for plane, first, last in rings.tolist():
+        found[plane].append(points[first:last])
+    return tuple(union_nonzero(r) if r else Region() for r in found)

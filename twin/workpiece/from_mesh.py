@@ -1,0 +1,170 @@
+"""Triangle meshes in and out: STL files, the check that they are solids, and their slices. The only door to trimesh."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from numpy.typing import ArrayLike, NDArray
+
+from twin.arrays import FloatArray, frozen
+from twin.errors import MeshError
+from twin.geometry.clip import DECIMALS
+from twin.geometry.slicing import MeshEdges, mesh_edges, mesh_sections
+from twin.workpiece.solid_check import check_closed, check_orientation
+from twin.workpiece.stock import SliceSet, even_pitch, plane_counts, plane_positions
+from twin.workpiece.store import PLANE_AXES
+
+_BINARY_HEADER = 84
+_BINARY_TRIANGLE = 50
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solid:
+    """A checked triangle mesh: closed, turned outwards, one or more bodies.
+
+    Attributes:
+        name: where it came from, for messages.
+        vertices_mm: shape (n, 3), rounded to 1e-5 mm, no two equal.
+        triangles: shape (m, 3), counter-clockwise seen from outside, no corner twice.
+        edges: the edges of the triangles.
+    """
+
+    name: str
+    vertices_mm: FloatArray
+    triangles: NDArray[np.int64]
+    edges: MeshEdges
+
+    @property
+    def volume_mm3(self) -> float:
+        """Volume inside the triangles; where bodies overlap it counts twice."""
+        a, b, c = (self.vertices_mm[self.triangles[:, i]] - self.vertices_mm[0] for i in range(3))
+        return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
+
+
+def load_mesh(path: Path | str, *, scale: float = 1.0, offset_mm: ArrayLike = (0.0, 0.0, 0.0)) -> Solid:
+    """Read a binary or ASCII STL file and check that it is a solid.
+
+    Args:
+        scale: mm a unit of the file, e.g. 25.4 for inches.
+        offset_mm: shape (3,), added after scaling.
+
+    Raises:
+        MeshError: no such file, no STL, or no solid; see `solid`.
+    """
+    try:
+        data = Path(path).read_bytes()
+    except OSError as error:
+        raise MeshError(f"{path}: cannot be read: {error.strerror}; expected an STL file") from error
+    if not (np.isfinite(scale) and scale > 0.0):
+        raise MeshError(f"{path}: scale {scale:g}; expected a number above 0")
+    corners = _stl_corners(str(path), data)
+    return solid(corners * scale + frozen(offset_mm, "offset_mm", (3,)), str(path))
+
+
+def solid(corners_mm: ArrayLike, name: str) -> Solid:
+    """Join loose triangles to a solid.
+
+    Vertices are rounded to 1e-5 mm first, so that triangles whose corners differ by rounding meet. Triangles with two
+    equal corners after that enclose nothing and are dropped; nothing else is mended.
+
+    Args:
+        corners_mm: shape (m, 3, 3), the corners of each triangle, counter-clockwise seen from outside.
+        name: for messages.
+
+    Raises:
+        MeshError: no triangles, a corner that is not finite, an open edge, triangles turned unlike their neighbours, or
+            a body turned inside out.
+    """
+    corners = np.asarray(corners_mm, dtype=np.float64)
+    if corners.size == 0:
+        raise MeshError(f"{name}: holds no triangles; expected a closed surface")
+    bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
+    if len(bad):
+        raise MeshError(f"{name}: triangle {bad[0] + 1} of {len(corners)} has a corner that is no finite number")
+    points = np.round(corners.reshape(-1, 3), DECIMALS) + 0.0
+    vertices, places = np.unique(points, axis=0, return_inverse=True)
+    triangles = places.reshape(-1, 3).astype(np.int64)
+    whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    if not whole.any():
+        raise MeshError(f"{name}: every one of its {len(corners)} triangles has no area; expected a closed surface")
+    triangles = np.ascontiguousarray(triangles[whole])
+    edges = mesh_edges(triangles)
+    check_closed(name, vertices, edges)
+    check_orientation(name, vertices, triangles)
+    vertices.flags.writeable = triangles.flags.writeable = False
+    return Solid(name, vertices, triangles, edges)
+
+
+def mesh_slices(mesh: Solid, pitch_mm: float) -> SliceSet:
+    """Slice a solid in three directions; its box is the box of the slices.
+
+    Args:
+        pitch_mm: largest distance of the planes.
+
+    Raises:
+        StockError: a mesh without extent, or a pitch that cannot be.
+    """
+    used = mesh.vertices_mm[np.unique(mesh.triangles)]
+    low, high = frozen(used.min(axis=0), "low_mm", (3,)), frozen(used.max(axis=0), "high_mm", (3,))
+    pitch, counts = even_pitch(low, high, pitch_mm), plane_counts(low, high, pitch_mm)
+    families = []
+    for axis, (u, v) in enumerate(PLANE_AXES):
+        planes = plane_positions(low, pitch, axis, counts[axis])
+        families.append(mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (axis, u, v), planes))
+    return SliceSet(low_mm=low, high_mm=high, pitch_mm=pitch, regions=tuple(families))
+
+
+def stl_bytes(vertices_mm: ArrayLike, triangles: ArrayLike) -> bytes:
+    """A mesh as binary STL, as float32 mm."""
+    return bytes(trimesh.exchange.stl.export_stl(_trimesh(vertices_mm, triangles)))
+
+
+def threemf_bytes(vertices_mm: ArrayLike, triangles: ArrayLike) -> bytes:
+    """A mesh as 3MF, in mm."""
+    mesh = _trimesh(vertices_mm, triangles)
+    mesh.units = "millimeter"
+    return bytes(trimesh.Scene(mesh).export(file_type="3mf"))
+
+
+def _trimesh(vertices_mm: ArrayLike, triangles: ArrayLike) -> trimesh.Trimesh:
+    return trimesh.Trimesh(np.asarray(vertices_mm), np.asarray(triangles), process=False)
+
+
+def _stl_corners(name: str, data: bytes) -> FloatArray:
+    """The corners of an STL file's triangles, shape (m, 3, 3).
+
+    Raises:
+        MeshError: empty, cut off, or not an STL.
+    """
+    if not data:
+        raise MeshError(f"{name}: is empty; expected an STL file")
+    if not data.lstrip()[:5].lower() == b"solid" or b"\0" in data:
+        _check_binary_length(name, data)
+    try:
+        mesh = trimesh.load_mesh(io.BytesIO(data), file_type="stl", process=False)
+        corners = np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)]
+    except Exception as error:  # trimesh and its helpers raise many kinds
+        raise MeshError(f"{name}: is no STL file ({error}); expected binary or ASCII STL") from error
+    if len(corners) == 0:
+        raise MeshError(f"{name}: holds no triangles; expected binary or ASCII STL with a closed surface")
+    return corners
+
+
+def _check_binary_length(name: str, data: bytes) -> None:
+    """A binary STL says how many triangles follow its header.
+
+    Raises:
+        MeshError: the file's length does not fit.
+    """
+    if len(data) < _BINARY_HEADER:
+        raise MeshError(f"{name}: is no STL file: {len(data)} bytes; expected at least {_BINARY_HEADER}")
+    count = int.from_bytes(data[_BINARY_HEADER - 4 : _BINARY_HEADER], "little")
+    wanted = _BINARY_HEADER + _BINARY_TRIANGLE * count
+    if len(data) != wanted:
+        raise MeshError(
+            f"{name}: is no whole STL file: {len(data)} bytes; expected {wanted} for the {count} triangles of its header"
+        )

@@ -1,0 +1,104 @@
+"""Whether a triangle mesh is a solid, and where it is not."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from twin.arrays import FloatArray
+from twin.errors import MeshError
+from twin.geometry.slicing import MeshEdges
+
+#: How many places a message names.
+_NAMED = 3
+
+
+def check_closed(name: str, vertices_mm: FloatArray, edges: MeshEdges) -> None:
+    """Every edge must be run along as often one way as the other.
+
+    Raises:
+        MeshError: open edges, or triangles turned unlike their neighbours.
+    """
+    odd = (edges.forward + edges.backward) % 2 == 1
+    if odd.any():
+        ends = edges.ends[odd]
+        holes, span = _holes(vertices_mm, ends)
+        raise MeshError(
+            f"{name}: the surface leaks: {_count(len(ends), 'open edge')} around {_count(holes, 'hole')}, "
+            f"the largest {span:.5g} mm wide: {_places(vertices_mm, ends)}; expected a closed surface"
+        )
+    turned = edges.forward != edges.backward
+    if turned.any():
+        ends = edges.ends[turned]
+        raise MeshError(
+            f"{name}: triangles are turned unlike their neighbours along {_count(len(ends), 'edge')}: "
+            f"{_places(vertices_mm, ends)}; expected all counter-clockwise seen from outside"
+        )
+
+
+def check_orientation(name: str, vertices_mm: FloatArray, triangles: NDArray[np.int64]) -> None:
+    """Every body must be turned outwards; a cavity is a body turned inwards inside another.
+
+    Raises:
+        MeshError: nothing enclosed, or a body inside out.
+    """
+    bodies = _bodies(len(vertices_mm), triangles)
+    a, b, c = (vertices_mm[triangles[:, i]] - vertices_mm[triangles[0, 0]] for i in range(3))
+    volumes = np.bincount(bodies, weights=np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0)
+    extent = float(np.prod(np.ptp(vertices_mm[triangles].reshape(-1, 3), axis=0)))
+    if np.abs(volumes).max() <= 1e-12 * extent:
+        raise MeshError(f"{name}: the surface encloses no volume; expected a solid")
+    for body in np.flatnonzero(volumes < -1e-12 * extent):
+        point = vertices_mm[triangles[np.argmax(bodies == body), 0]]
+        if winding_number(point, vertices_mm, triangles[bodies != body]) < 0.5:
+            which = f" (body {body + 1} of {len(volumes)})" if len(volumes) > 1 else ""
+            raise MeshError(
+                f"{name}: the surface is inside out{which}: volume {volumes[body]:.6g} mm3 at {_point(point)}; "
+                "expected triangles counter-clockwise seen from outside"
+            )
+
+
+def winding_number(point_mm: FloatArray, vertices_mm: FloatArray, triangles: NDArray[np.int64]) -> float:
+    """How often closed surfaces wind about a point: their solid angle over 4 pi (Van Oosterom and Strackee, 1983)."""
+    a, b, c = (vertices_mm[triangles[:, i]] - point_mm for i in range(3))
+    la, lb, lc = (np.linalg.norm(p, axis=1) for p in (a, b, c))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+    dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
+    angles = 2.0 * np.arctan2(volume, la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb)
+    return float(angles.sum()) / (4.0 * np.pi)
+
+
+def _bodies(count: int, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The number of the connected body that each triangle belongs to."""
+    rows = np.concatenate((triangles[:, 0], triangles[:, 1]))
+    columns = np.concatenate((triangles[:, 1], triangles[:, 2]))
+    graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(count, count))
+    _, labels = connected_components(graph, directed=False)
+    _, bodies = np.unique(labels[triangles[:, 0]], return_inverse=True)
+    return bodies.astype(np.int64)
+
+
+def _holes(vertices_mm: FloatArray, ends: NDArray[np.int64]) -> tuple[int, float]:
+    """How many connected runs open edges make, and the diagonal of the largest one's box."""
+    used, places = np.unique(ends, return_inverse=True)
+    pairs = places.reshape(-1, 2)
+    graph = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(used),) * 2)
+    holes, labels = connected_components(graph, directed=False)
+    points = vertices_mm[used]
+    spans = [float(np.linalg.norm(np.ptp(points[labels == hole], axis=0))) for hole in range(min(holes, 1000))]
+    return int(holes), max(spans)
+
+
+def _places(vertices_mm: FloatArray, ends: NDArray[np.int64]) -> str:
+    named = [f"{_point(vertices_mm[a])} to {_point(vertices_mm[b])}" for a, b in ends[:_NAMED]]
+    return ", ".join(named) + (", ..." if len(ends) > _NAMED else "")
+
+
+def _point(p: FloatArray) -> str:
+    return "(" + ", ".join(f"{x:.6g}" for x in p) + ")"
+
+
+def _count(n: int, noun: str) -> str:
+    return f"{n} {noun}" + ("" if n == 1 else "s")
