@@ -118,31 +118,32 @@ class Replay:
     def _move(self, move: Move) -> Iterator[Record]:
         """Step a motion: engagement and forces at each step, then its material removed."""
         tool = self._tools.get(move.tool)
-        if tool is None or not self._material.near(tool.cutter, *_box(move)):
+        if tool is None or not self._material.near(tool, *_box(move)):
             yield self._step(move, move.start_mm, move.end_mm, move.duration_s, None, None)
             return
         self._refuse_start_inside(tool, move)
         corners = move.corners_mm(self.job.simulation.step_mm, self._tolerance.chord_mm)
         lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+        total = float(lengths.sum())
+        touched: dict[CollisionKind, tuple[float, FloatArray, float]] = {}
         for (start, end), length in zip(pairwise(corners), lengths, strict=True):
-            yield from self._piece(move, tool, start, end, move.duration_s * float(length / lengths.sum()))
+            part = float(length) / total if total > 0.0 else 1.0
+            begun_s = self._t_s
+            yield from self._piece(move, tool, start, end, move.duration_s * part)
+            for kind, volume in self._material.pass_through(tool, start, end, _forbidden(move)):
+                first_s, point, sum_mm3 = touched.get(kind, (begun_s, start, 0.0))
+                touched[kind] = (first_s, point, sum_mm3 + volume)
+        for kind, (first_s, point, volume) in touched.items():
+            yield self._collision(move, kind, point, volume, first_s)
 
     def _piece(
         self, move: Move, tool: ToolSetup, start: FloatArray, end: FloatArray, duration_s: float
     ) -> Iterator[Record]:
         """One straight piece of a motion."""
-        t_s = self._t_s
-        if move.rapid or move.spindle_rpm == 0.0 or not np.any(end != start):
-            yield self._step(move, start, end, duration_s, None, None)
-            volume = self._material.cut_at_once(tool, start, end)
-            if self._material.significant(volume):
-                kind: CollisionKind = "rapid" if move.rapid else "spindle-stopped"
-                yield self._collision(move, kind, start, volume, t_s)
-        else:
+        if _forbidden(move) is None and np.any(end != start):
             yield from self._cut(move, tool, start, end, duration_s)
-            self._material.add(tool, start, end)
-        for touch in self._material.touches(tool, start, end):
-            yield self._collision(move, touch.body, start, touch.volume_mm3, t_s)
+        else:
+            yield self._step(move, start, end, duration_s, None, None)
 
     def _cut(
         self, move: Move, tool: ToolSetup, start: FloatArray, end: FloatArray, duration_s: float
@@ -280,6 +281,13 @@ def _box(move: Move) -> tuple[FloatArray, FloatArray]:
     corners = move.corners_mm(math.inf, 0.01 * move.length_mm)
     reach = 0.02 * move.length_mm
     return corners.min(axis=0) - reach, corners.max(axis=0) + reach
+
+
+def _forbidden(move: Move) -> CollisionKind | None:
+    """What it is called when this motion meets material, None where cutting is what it is for."""
+    if move.rapid:
+        return "rapid"
+    return "spindle-stopped" if move.spindle_rpm == 0.0 else None
 
 
 def _point(p: FloatArray) -> tuple[float, float, float]:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -19,14 +18,6 @@ from twin.workpiece.trislice import TriSlices
 #: Sweeps wait until the tool has gone on by this many slice pitches, or until this many are waiting.
 PENDING_PITCHES = 10.0
 PENDING_SWEEPS = 48
-
-
-@dataclass(frozen=True, slots=True)
-class Touch:
-    """A body that swept through material which it must not touch."""
-
-    body: CollisionKind
-    volume_mm3: float
 
 
 class Material:
@@ -50,14 +41,41 @@ class Material:
         """Sweeps that are not yet subtracted from the slices, oldest first."""
         return [sweep for sweep, _ in self._waiting]
 
-    def near(self, body: Body, start_mm: FloatArray, end_mm: FloatArray) -> bool:
-        """Whether a motion's box meets the stock's box."""
+    def near(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> bool:
+        """Whether the box of a motion of any of a tool's bodies meets the stock's box."""
+        return any(self._meets(body, start_mm, end_mm) for body in (tool.cutter, *(b for _, b in tool.rigid)))
+
+    def _meets(self, body: Body, start_mm: FloatArray, end_mm: FloatArray) -> bool:
         low, high = Sweep(body, start_mm, end_mm).bounds_mm
         return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
 
-    def add(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> None:
-        """A feed motion of the cutting part; subtracted now or a little later."""
-        self._waiting.append((Sweep(tool.cutter, start_mm, end_mm), tool.number))
+    def pass_through(
+        self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray, forbidden: CollisionKind | None
+    ) -> Iterator[tuple[CollisionKind, float]]:
+        """Move a tool in a straight line: its cutting part removes material, now or a little later.
+
+        Args:
+            forbidden: what it is called when the cutting part meets material, None where it may.
+
+        Yields:
+            Kind and volume of each touch that must not be.
+        """
+        if forbidden is None:
+            self._wait(Sweep(tool.cutter, start_mm, end_mm), tool.number)
+        else:
+            self.flush()
+            volume = self._subtract(Sweep(tool.cutter, start_mm, end_mm), tool.number)
+            if self.significant(volume):
+                yield forbidden, volume
+        for kind, body in tool.rigid:
+            if self._meets(body, start_mm, end_mm):
+                self.flush()
+                volume = self._removal.cut(Sweep(body, start_mm, end_mm), apply=False)
+                if self.significant(volume):
+                    yield kind, volume
+
+    def _wait(self, sweep: Sweep, tool: int) -> None:
+        self._waiting.append((sweep, tool))
         newer = sum(s.length_mm for s, _ in self._waiting) - self._waiting[0][0].length_mm
         while len(self._waiting) > 1 and (newer >= self._window_mm or len(self._waiting) > PENDING_SWEEPS):
             self._subtract(*self._waiting.popleft())
@@ -67,20 +85,6 @@ class Material:
         """Subtract everything that waits."""
         while self._waiting:
             self._subtract(*self._waiting.popleft())
-
-    def cut_at_once(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> float:
-        """A motion of the cutting part that ought to meet no material; returns the volume it removed."""
-        self.flush()
-        return self._subtract(Sweep(tool.cutter, start_mm, end_mm), tool.number)
-
-    def touches(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> Iterable[Touch]:
-        """Shank and holder of a tool that sweep through material on a motion, after its own cutting part went by."""
-        for name, body in tool.rigid:
-            if self.near(body, start_mm, end_mm):
-                self.flush()
-                volume = self._removal.cut(Sweep(body, start_mm, end_mm), apply=False)
-                if volume > self._tolerance.contact_mm3:
-                    yield Touch(name, volume)
 
     def volume_inside(self, tool: ToolSetup, tip_mm: FloatArray) -> float:
         """Volume of material that the cutting part stands in, not moving."""

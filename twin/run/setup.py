@@ -69,7 +69,7 @@ def tool_setup(job: Job, tool: Tool, tolerance: Tolerance) -> ToolSetup:
         )
     except ToolError as error:
         raise JobError(str(job.path), [f"tools number {tool.number}: {error}"]) from error
-    coefficients = tool.cutting or job.cutting
+    coefficients = job.coefficients(tool)
     return ToolSetup(
         number=tool.number,
         description=describe(tool),
@@ -165,6 +165,7 @@ def machine_settings(job: Job, slices: SliceSet) -> MachineSettings:
         home_mm=home,
         start_mm=machine.start_mm or home,
         length_offsets_mm=lengths,
+        tool=job.program.tool,
         arc_centres=job.program.arc_centres,
         block_delete=job.program.block_delete,
         units=job.program.units,
