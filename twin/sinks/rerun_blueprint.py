@@ -20,17 +20,21 @@ from twin.sinks import rerun_layout as layout
 #: Half of what the close view of the forces shows around the cursor.
 _CLOSE_S = 0.04
 
+#: The blueprint for archives that comes with the program; made by ``python -m twin.sinks.rerun_blueprint``.
+SHIPPED = Path(__file__).with_name("twin.rbl")
+
 _UP_TO_CURSOR = [
     rr.VisibleTimeRange(name, start=rr.TimeRangeBoundary.infinite(), end=rr.TimeRangeBoundary.cursor_relative())
     for name in layout.TIMELINES
 ]
 
 
-def blueprint(stock_bounds_mm: FloatArray | None = None) -> rrb.Blueprint:
+def blueprint(stock_bounds_mm: FloatArray | None = None, *, timeline: str = layout.TIME) -> rrb.Blueprint:
     """The layout of the timeline.
 
     Args:
         stock_bounds_mm: shape (2, 3), what the camera looks at; None leaves the camera to the viewer.
+        timeline: machine time: `layout.TIME` in a recording, `layout.ARCHIVE_TIME` in an archive.
     """
     return rrb.Blueprint(
         rrb.Horizontal(
@@ -41,13 +45,13 @@ def blueprint(stock_bounds_mm: FloatArray | None = None) -> rrb.Blueprint:
                 row_shares=[11, 5, 3],
             ),
             rrb.Vertical(
-                rrb.Tabs(_blocks(), _summary()),
+                rrb.Tabs(_blocks(timeline), _summary()),
                 _curves("Force around the cursor, ±40 ms", layout.FORCES, close=True),
                 row_shares=[11, 8],
             ),
             column_shares=[7, 3],
         ),
-        rrb.TimePanel(state="collapsed", timeline=layout.TIME, play_state="following"),
+        rrb.TimePanel(state="collapsed", timeline=timeline, play_state="following"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
         auto_views=False,
@@ -56,13 +60,13 @@ def blueprint(stock_bounds_mm: FloatArray | None = None) -> rrb.Blueprint:
 
 
 def save_blueprint(path: Path) -> None:
-    """Write the layout to a ``.rbl`` file, for archives that the viewer reads itself.
+    """Write the layout to a ``.rbl`` file, for archives that the viewer reads itself (docs/rerun.md).
 
     Raises:
         ArchiveError: the file cannot be written.
     """
     try:
-        blueprint().save(layout.APPLICATION_ID, path)
+        blueprint(timeline=layout.ARCHIVE_TIME).save(layout.APPLICATION_ID, path)
     except (OSError, RuntimeError) as error:
         raise ArchiveError(f"{path}: cannot be written: {error}") from error
 
@@ -96,13 +100,14 @@ def _eye(stock_bounds_mm: FloatArray) -> rrb.EyeControls3D:
     return rrb.EyeControls3D(position=target + reach * np.array(layout.EYE), look_target=target, eye_up=(0, 0, 1))
 
 
-def _blocks() -> rrb.TextLogView:
-    """NC blocks and collisions."""
+def _blocks(timeline: str) -> rrb.TextLogView:
+    """NC blocks and collisions; lines of an archive have no colours, so their level stands beside."""
+    columns = ["Body"] if timeline == layout.TIME else ["LogLevel", "Body"]
     return rrb.TextLogView(
         origin="/",
         contents=["nc/**", "collision/**"],
         name="NC program",
-        columns=rrb.TextLogColumns(timeline_columns=[layout.TIME], text_log_columns=["Body"]),
+        columns=rrb.TextLogColumns(timeline_columns=[timeline], text_log_columns=columns),
         format_options=rrb.TextLogFormat(monospace_body=True),
     )
 
@@ -113,11 +118,14 @@ def _summary() -> rrb.TextDocumentView:
 
 def _curves(name: str, series: tuple[layout.Series, ...], *, close: bool = False) -> rrb.TimeSeriesView:
     """Curves over the whole run, or around the cursor."""
-    around = rr.VisibleTimeRange(
-        layout.TIME,
-        start=rr.TimeRangeBoundary.cursor_relative(seconds=-_CLOSE_S),
-        end=rr.TimeRangeBoundary.cursor_relative(seconds=_CLOSE_S),
-    )
+    around = [
+        rr.VisibleTimeRange(
+            timeline,
+            start=rr.TimeRangeBoundary.cursor_relative(seconds=-_CLOSE_S),
+            end=rr.TimeRangeBoundary.cursor_relative(seconds=_CLOSE_S),
+        )
+        for timeline in (layout.TIME, layout.ARCHIVE_TIME)
+    ]
     return rrb.TimeSeriesView(
         origin="/",
         contents=[*(s.entity for s in series), layout.ARCHIVE_FORCE],
@@ -142,3 +150,7 @@ def _archive_curve(series: layout.Series) -> rrb.Visualizer:
             )
         ]
     )
+
+
+if __name__ == "__main__":
+    save_blueprint(SHIPPED)

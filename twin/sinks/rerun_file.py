@@ -50,36 +50,38 @@ class RecordingFile:
         self._file = PartialFile(path, force=force)
         self._error: ArchiveError | None = None
         self._way: _Way = _Pipe(self._put) if _OPEN_FILES.exists() else _Memory(self._put)
-        self._recording: rr.RecordingStream | None = None
+        self._connected = False
+        self._told = False
 
     def connect(self, recording: rr.RecordingStream, *viewers: rr.GrpcSink) -> None:
         """Let a recording write here, and to viewers beside; at most once."""
         recording.set_sinks(self._way.sink(recording), *viewers)
         self._way.opened()
-        self._recording = recording
+        self._connected = True
 
     def check(self) -> None:
-        """Raise what has gone wrong in the background.
+        """Raise what has gone wrong in the background, once.
 
         Raises:
             ArchiveError: something could not be written; the file keeps its partial name.
         """
-        if self._error is not None:
+        if self._error is not None and not self._told:
+            self._told = True
             raise self._error
 
     def close(self) -> None:
-        """Take the rest and give the file its final name; without a recording, leave none.
+        """Take the rest of a disconnected recording and give the file its final name; without one, leave none.
 
         Raises:
             ArchiveError: something could not be written; the file keeps its partial name.
         """
-        if self._recording is None:
+        if not self._connected:
             self._file.discard()
             return
-        self._recording.disconnect()
         self._way.finish()
         self.check()
-        self._file.commit()
+        if self._error is None:
+            self._file.commit()
 
     def _put(self, data: bytes) -> None:
         """Write, and after an error only swallow."""

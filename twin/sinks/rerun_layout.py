@@ -13,6 +13,8 @@ APPLICATION_ID = "twin"
 #: Machine time from program start (duration), index of the step, line of the NC program.
 TIME, STEP, NC_LINE = "machine_time", "step", "nc_line"
 TIMELINES = (TIME, STEP, NC_LINE)
+#: Machine time as the viewer names it when it reads an archive itself.
+ARCHIVE_TIME = "message_log_time"
 
 TOOL = "machine/tool"
 PATH = "machine/path"

@@ -16,6 +16,7 @@ from twin.sinks.rerun_shapes import box_edges, class_colors, class_force_n, forc
 #: Parts of the scale, and numbers beside it.
 _BARS = 28
 _LABELS = 5
+_UP = np.array((0.0, 0.0, 1.0))
 
 
 def draw_scene(recording: rr.RecordingStream, header: RunHeader) -> None:
@@ -46,14 +47,14 @@ def draw_scale(recording: rr.RecordingStream, stock_bounds_mm: FloatArray, end_n
     recording.log(layout.PATH, rr.AnnotationContext(classes), static=True, strict=True)
     foot, beside, height = _bar(stock_bounds_mm)
     at = np.linspace(0.0, height, _BARS + 1)
-    strips = [np.array([foot, foot]) + [[0.0, 0.0, a], [0.0, 0.0, b]] for a, b in pairwise(at)]
+    strips = [np.stack([foot + a * _UP, foot + b * _UP]) for a, b in pairwise(at)]
     forces = (np.arange(_BARS) + 0.5) / _BARS * end_n
     bar_colors = [colors[max(1, force_class(float(f)))] for f in forces]
     bar = rr.LineStrips3D(strips, colors=bar_colors, radii=rr.Radius.ui_points(4.0))
     recording.log(layout.SCALE, bar, static=True, strict=True)
     marks = np.linspace(0.0, 1.0, _LABELS)
     numbers = rr.Points3D(
-        beside + marks[:, None] * (0.0, 0.0, height),
+        beside + marks[:, None] * height * _UP,
         labels=[f"{m * end_n:.3g} N" for m in marks],
         colors=layout.TEXT_COLOR,
         radii=rr.Radius.ui_points(0.0),

@@ -81,7 +81,7 @@ class RerunSink:
             self._file.check()
 
     def close(self) -> None:
-        """Send what waits and finish the file; may be called twice.
+        """Send what waits and finish the file; may be called twice. A viewer that was closed meanwhile is no error.
 
         Raises:
             ArchiveError: the end could not be written; what was written is kept under the partial name.
@@ -93,7 +93,7 @@ class RerunSink:
             self._send_batch()
             if self._tool is not None:
                 self._log(layout.TOOL, self._now, rr.Transform3D.from_fields(translation=self._tip))
-            self._recording.flush(timeout_sec=60.0)
+            self._recording.disconnect()
         if self._file is not None:
             self._file.close()
 
