@@ -182,7 +182,7 @@ def dwell(state: State, command: Command) -> Result:
     use = command.of_phase("dwell")[0]
     if len(given) != 1:
         count = "without a time" if not given else "with two times"
-        raise block.error(use.word, "bad-dwell", f"{use.word.text} {count}", f"one of the words {' or '.join(table)}")
+        raise block.error(use.word, "bad-dwell", f"{use.word.text} {count}", f"{' or '.join(table)} and a time")
     word, rule = given[0], table[given[0].letter]
     if rule.whole and word.has_point:
         problem = f"{word.text} has a decimal point, but counts steps of {rule.seconds} s"

@@ -136,7 +136,7 @@ def test_refusals(text: str, message: str, refusal) -> None:
 
 def test_the_radius_error_says_where_the_other_kind_of_centre_would_fit(refusal) -> None:
     assert str(refusal("X30 Y5\nG3 F1 X20 Y15 I20 J5")) == (
-        "t.nc:2:15: the arc's radius is 20.6155 mm at its start and 31.6228 mm at its end, with incremental centre "
+        "t.nc:2:15: the arc's radius is 20.6155 mm at its start and 30.4138 mm at its end, with incremental centre "
         "I20 J5; expected radii within 0.05 mm of each other; absolute arc centres (G90.1, or the setting "
         "arc_centres) would fit [arc-radius]"
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from gcode.events import LinearMotion
@@ -138,7 +140,7 @@ def test_length_offsets_shift_the_controlled_point_and_move_nothing(motions) -> 
 def test_the_gauge_point_never_jumps(motions) -> None:
     moved = motions("G43 H1 Z50\nG43 H2 X1\nG49 X2\nZ3\nG44 H1 Y1", length_offsets_mm=LENGTHS, start_mm=(0, 0, 400))
     gauge = [[(m.start_mm, m.end_mm)[i][2] + m.state.length_offset_mm for i in (0, 1)] for m in moved]
-    assert all(before[1] == after[0] for before, after in zip(gauge, gauge[1:], strict=False))
+    assert all(before[1] == after[0] for before, after in pairwise(gauge))
     assert gauge[0][0] == 400
 
 

@@ -102,12 +102,12 @@ def test_dwell(dialect: str, text: str, seconds: float, run) -> None:
 @pytest.mark.parametrize(
     ("dialect", "text", "message"),
     [
-        ("fanuc", "G4", "t.nc:1:1: G4 without a time; expected one of the words P or X [bad-dwell]"),
-        ("fanuc", "G4 P1 X1", "t.nc:1:1: G4 with two times; expected one of the words P or X [bad-dwell]"),
+        ("fanuc", "G4", "t.nc:1:1: G4 without a time; expected P or X and a time [bad-dwell]"),
+        ("fanuc", "G4 P1 X1", "t.nc:1:1: G4 with two times; expected P or X and a time [bad-dwell]"),
         ("fanuc", "G4 P1.5", "t.nc:1:4: P1.5 has a decimal point, but counts steps of 0.001 s; expected P without a "
          "point, or X and seconds [bad-dwell]"),
         ("fanuc", "G4 X-1", "t.nc:1:4: X-1 is negative; expected X of 0 or more [bad-value]"),
-        ("linuxcnc", "G4", "t.nc:1:1: G4 without a time; expected one of the words P [bad-dwell]"),
+        ("linuxcnc", "G4", "t.nc:1:1: G4 without a time; expected P and a time [bad-dwell]"),
     ],
 )  # fmt: skip
 def test_dwell_refusals(dialect: str, text: str, message: str, refusal) -> None:
