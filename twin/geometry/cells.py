@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry import kernels
+from twin.geometry import kernels, line_kernels, lines
 from twin.geometry.clip import union_convex
 from twin.geometry.region import Region
 from twin.geometry.strips import Strips
@@ -157,6 +157,19 @@ class CellFamily:
             if written >= 0:
                 return offsets, out[:written]
             room *= 4
+
+    def line_ends(self, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]) -> lines.LineEnds:
+        """Lines through a plane, as `SliceStore.line_ends` gives them."""
+        self.ensure(k, k + 1)
+        kernel = line_kernels.cell_v_lines if fixed else line_kernels.cell_u_lines
+        place, cells = self.base[k], (self.state, self.start, self.size, self.pool)
+        return lines.collect(
+            len(at_mm),
+            lambda offsets, ends, slopes: kernel(
+                *(at_mm, window_mm, lines.MERGE_MM, place, self.grid, self.columns, self.tiles),
+                *(*cells, offsets, ends, slopes),
+            ),
+        )
 
     def region(self, k: int) -> Region:
         """Material on a plane as rings."""

@@ -19,8 +19,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.geometry.region import Region
 from twin.arrays import FloatArray
+from twin.geometry.lines import LineEnds
+from twin.geometry.region import Region
 
 #: In-plane axes (u, v) of each slice family.
 PLANE_AXES: tuple[tuple[int, int], ...] = ((1, 2), (0, 2), (0, 1))
@@ -59,6 +60,17 @@ class SliceStore(Protocol):
         Returns:
             offsets, shape (n + 1,), and v values: line ``i`` has material in [v[offsets[i]], v[offsets[i] + 1]],
             [v[offsets[i] + 2], ...], increasing; an even number of values for each line.
+        """
+
+    def line_ends(
+        self, axis: int, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+    ) -> LineEnds:
+        """Where straight lines enter and leave the material of one slice, with the slope of its boundary there.
+
+        Args:
+            fixed: in-plane coordinate that is constant on a line, 0 for u, 1 for v.
+            at_mm: shape (n,), that coordinate for each line.
+            window_mm: only this range of the other coordinate is wanted; ends outside of it may be anything.
         """
 
     def contains(self, points_mm: FloatArray, axis: int) -> NDArray[np.bool_]:

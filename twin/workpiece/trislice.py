@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry import clip, kernels
 from twin.geometry.cells import CELL_PITCHES, CellFamily
+from twin.geometry.lines import LineEnds, ring_line_ends
 from twin.geometry.region import Region
 from twin.geometry.strips import Strips
 from twin.workpiece.stock import SliceSet
@@ -60,6 +61,12 @@ class TriSlices(ABC):
     @abstractmethod
     def region(self, axis: int, k: int) -> Region:
         """Material on one plane as rings: outer ones counter-clockwise in (u, v), holes clockwise."""
+
+    @abstractmethod
+    def line_ends(
+        self, axis: int, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+    ) -> LineEnds:
+        """See `SliceStore.line_ends`."""
 
     @abstractmethod
     def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
@@ -126,6 +133,12 @@ class CellSlices(TriSlices):
     def crossings(self, axis: int, k: int, u_mm: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
         """See `SliceStore.crossings`."""
         return self._families[axis].crossings(k, u_mm)
+
+    def line_ends(
+        self, axis: int, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+    ) -> LineEnds:
+        """See `SliceStore.line_ends`."""
+        return self._families[axis].line_ends(k, fixed, at_mm, window_mm)
 
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
         """See `TriSlices.prepare`: planes are built when first needed; those that are not built hold nothing."""
@@ -206,6 +219,12 @@ class PolygonSlices(TriSlices):
             hits.append(np.sort(np.array(values)))
         offsets = np.concatenate(([0], np.cumsum([len(h) for h in hits])))
         return offsets.astype(np.int64), np.concatenate(hits) if hits else np.zeros(0)
+
+    def line_ends(
+        self, axis: int, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+    ) -> LineEnds:
+        """See `SliceStore.line_ends`; the whole of every line, whatever the window."""
+        return ring_line_ends([np.array(p) / clip.UNITS_PER_MM for p in self._paths[axis][k]], fixed, at_mm)
 
     def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
         """See `TriSlices.count_votes`."""
