@@ -1,0 +1,39 @@
+"""The job file: one TOML file that says what is replayed, on which stock, with which tools, and how finely.
+
+`load_job` reads one and says every mistake in it at once, as a `twin.errors.JobError`.
+"""
+
+from twin.job.load import job_from_dict, load_job
+from twin.job.model import (
+    Box,
+    Cutting,
+    Cylinder,
+    Job,
+    JobFile,
+    Machine,
+    Output,
+    Program,
+    RigidPart,
+    Simulation,
+    Stock,
+    Tool,
+)
+from twin.job.schema import job_schema
+
+__all__ = [
+    "Box",
+    "Cutting",
+    "Cylinder",
+    "Job",
+    "JobFile",
+    "Machine",
+    "Output",
+    "Program",
+    "RigidPart",
+    "Simulation",
+    "Stock",
+    "Tool",
+    "job_from_dict",
+    "job_schema",
+    "load_job",
+]

@@ -1,0 +1,106 @@
+"""Job files in: read, check everything, and say every mistake at once."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from twin.errors import JobError
+from twin.job.facts import Facts
+from twin.job.model import Job, JobFile
+from twin.job.problems import Location, Problem, problems_of
+from twin.job.rules import RULES
+from twin.job.toml_text import toml_text
+
+_FILES: tuple[tuple[str, str], ...] = (("program", "file"), ("stock", "stl"), ("output", "mcap"), ("output", "rrd"))
+_TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+
+
+def load_job(path: str | PathLike[str]) -> Job:
+    """Read a job file.
+
+    Raises:
+        JobError: the file cannot be read, is no TOML, or has mistakes: all of them are in the message.
+    """
+    path = Path(path)
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        raise JobError(str(path), [f"cannot be read: {error.strerror}; expected a job file (TOML)"]) from error
+    except UnicodeDecodeError as error:
+        raise JobError(str(path), [f"byte {error.start} is not UTF-8; expected a job file (TOML)"]) from error
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise _syntax_error(path, text, str(error)) from error
+    return _job(data, path, text)
+
+
+def job_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") -> Job:
+    """Make a job from tables as `tomllib` gives them; its text is written from them.
+
+    Args:
+        folder: what the files in it are relative to.
+
+    Raises:
+        JobError: see `load_job`.
+    """
+    return _job(data, Path(folder) / "job.toml", toml_text(data))
+
+
+def _syntax_error(path: Path, text: str, message: str) -> JobError:
+    """TOML's complaint with the place in front."""
+    lines = text.splitlines() or [""]
+    place = _TOML_PLACE.search(message)
+    line, column = (len(lines), len(lines[-1]) + 1) if place is None or place[1] is None else map(int, place.groups())
+    what = _TOML_PLACE.sub("", message)
+    return JobError(f"{path}:{line}:{column}", [f"no valid TOML: {what[:1].lower()}{what[1:]}"])
+
+
+def _job(data: Mapping[str, Any], path: Path, text: str) -> Job:
+    problems: list[Problem] = []
+    try:
+        JobFile.model_validate(data)
+    except ValidationError as error:
+        problems += problems_of(error.errors(include_url=False), JobFile)
+    facts = Facts(data, [p.location for p in problems], _default)
+    problems = [_with_tool(p, facts) for p in problems]
+    problems += [problem for rule in RULES for problem in rule(facts, path.parent)]
+    if problems:
+        raise JobError(str(path), [str(p) for p in problems])
+    return Job.model_validate({**_joined(data, path.parent), "path": path, "text": text})
+
+
+def _with_tool(problem: Problem, facts: Facts) -> Problem:
+    """Say the tool's number where a mistake is in a tool's table."""
+    if problem.location[:1] != ("tools",) or len(problem.location) < 3 or problem.location[2] == "number":
+        return problem
+    return Problem(problem.location, problem.text, facts.get("tools", problem.location[1], "number"))
+
+
+def _default(location: Location) -> Any:
+    """Value of a key that is not given; None where it has no default."""
+    table: type[BaseModel] = JobFile
+    for key in location[:-1]:
+        annotation = table.model_fields[str(key)].annotation if key in table.model_fields else None
+        if not isinstance(annotation, type) or not issubclass(annotation, BaseModel):
+            return None
+        table = annotation
+    field = table.model_fields.get(str(location[-1]))
+    return None if field is None or field.is_required() else field.default
+
+
+def _joined(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """The data with its files' paths joined to the folder."""
+    joined: dict[str, Any] = dict(data)
+    for table, key in _FILES:
+        name = joined.get(table, {}).get(key)
+        if name is not None:
+            joined[table] = {**joined[table], key: folder / name}
+    return joined

@@ -1,0 +1,196 @@
+"""Mistakes in a job file in words: where, the value found, and what is allowed."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, TypeAlias, Union, get_args, get_origin
+
+import annotated_types as at
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+Location: TypeAlias = tuple[str | int, ...]
+
+_LONGEST_VALUE = 60
+_BOUNDS = {at.Gt: ("above", "gt"), at.Ge: ("at least", "ge"), at.Lt: ("below", "lt"), at.Le: ("at most", "le")}
+_WORDS: dict[Any, str] = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
+_COUNTS = {2: "two", 3: "three"}
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One mistake.
+
+    Attributes:
+        location: keys and list indices from the top of the file.
+        text: what follows the key path, e.g. `` = 7: expected ...``.
+        tool: number of the tool that it concerns, where it is known.
+    """
+
+    location: Location
+    text: str
+    tool: int | None = None
+
+    def __str__(self) -> str:
+        tool = f" (tool {self.tool})" if self.tool is not None else ""
+        return f"{key_path(self.location)}{tool}{self.text}"
+
+
+def wrong(location: Location, value: object, expected: str, tool: int | None = None) -> Problem:
+    """A value that is not allowed."""
+    return Problem(location, f" = {show(value)}: expected {expected}", tool)
+
+
+def missing(location: Location, expected: str, tool: int | None = None) -> Problem:
+    """A key that must be there."""
+    return Problem(location, f": missing; expected {expected}", tool)
+
+
+def unknown(location: Location, keys: Iterable[str], tool: int | None = None) -> Problem:
+    """A key that means nothing, with the one that was probably meant."""
+    names = list(keys)
+    near = difflib.get_close_matches(str(location[-1]), names, n=1, cutoff=0.7)
+    hint = f"did you mean {near[0]}?" if near else f"expected one of {', '.join(names)}"
+    return Problem(location, f": unknown key; {hint}", tool)
+
+
+def key_path(location: Location) -> str:
+    """As people write it: ``tools[0].diameter_mm``."""
+    path = ""
+    for key in location:
+        path += f"[{key}]" if isinstance(key, int) else f".{key}" if path else key
+    return path
+
+
+def show(value: object) -> str:
+    """A value as TOML writes it, shortened."""
+    text = _toml(value)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 4]} ..."
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, str | PurePath):
+        return json.dumps(str(value), ensure_ascii=False)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{k} = {_toml(v)}' for k, v in value.items())} }}" if value else "{}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_toml, value))}]"
+    return str(value)
+
+
+def problems_of(errors: Sequence[ErrorDetails], model: type[BaseModel]) -> Iterator[Problem]:
+    """What pydantic found, each mistake once.
+
+    Args:
+        errors: from `ValidationError.errors`.
+        model: the model that was validated.
+    """
+    seen: set[Location] = set()
+    for error in errors:
+        location = _location(error)
+        if location not in seen:
+            seen.add(location)
+            yield _problem(location, error, model)
+
+
+def _location(error: ErrorDetails) -> Location:
+    """Where a mistake is; a list that is too short is wrong itself, not its missing item."""
+    location = error["loc"]
+    if location[-1] == "[key]" or (error["type"] == "missing" and isinstance(location[-1], int)):
+        return location[:-1]
+    return location
+
+
+def _problem(location: Location, error: ErrorDetails, model: type[BaseModel]) -> Problem:
+    if error["loc"][-1] == "[key]":
+        annotation, _ = _declared(location[:-1], model)
+        return unknown(location, get_args(get_args(annotation)[0]))
+    if error["type"] == "extra_forbidden":
+        table, _ = _declared(location[:-1], model)
+        return unknown(location, table.model_fields)
+    annotation, field = _declared(location, model)
+    meaning = f" ({field.description})" if field is not None and field.description else ""
+    expected = allowed(annotation, field.metadata if field is not None else ()) + meaning
+    if error["type"] == "missing" and location == error["loc"]:
+        return missing(location, expected)
+    return wrong(location, error["input"], expected)
+
+
+def _declared(location: Location, model: type[BaseModel]) -> tuple[Any, FieldInfo | None]:
+    """Type and field that a place is declared with; the field is None inside lists, and for the file as a whole."""
+    annotation: Any = model
+    field: FieldInfo | None = None
+    for key in location:
+        if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+            field = annotation.model_fields[str(key)]
+            annotation = _bare(field.annotation)
+        else:
+            field = None
+            annotation = _bare(_inner(annotation))
+    return annotation, field
+
+
+def _bare(annotation: Any) -> Any:
+    """A type without None beside it and without notes."""
+    while True:
+        origin = get_origin(annotation)
+        if origin is Annotated:
+            annotation = get_args(annotation)[0]
+        elif origin in (Union, UnionType):
+            annotation = next(a for a in get_args(annotation) if a is not NoneType)
+        else:
+            return annotation
+
+
+def _inner(annotation: Any) -> Any:
+    """Type of the items of a list, or of the values of a table with free keys."""
+    arguments = get_args(annotation)
+    return arguments[1] if get_origin(annotation) is dict else arguments[0]
+
+
+def allowed(annotation: Any, notes: Iterable[Any] = ()) -> str:
+    """What a type takes, in words.
+
+    Args:
+        notes: bounds that belong to it.
+    """
+    annotation = _bare(annotation)
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Literal:
+        return "one of " + ", ".join(map(_toml, arguments))
+    if origin is tuple:
+        return _allowed_list(arguments)
+    if origin is dict:
+        return "a table with keys " + ", ".join(get_args(arguments[0]))
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return "a table with keys " + ", ".join(annotation.model_fields)
+    if isinstance(annotation, type) and issubclass(annotation, PurePath):
+        return "a file name"
+    return " ".join([_WORDS[annotation], *_bounds(notes)])
+
+
+def _allowed_list(items: tuple[Any, ...]) -> str:
+    if items[-1] is not Ellipsis:
+        return f"a list of {_COUNTS[len(items)]} numbers"
+    inner = _bare(items[0])
+    is_table = isinstance(inner, type) and issubclass(inner, BaseModel)
+    return "a list of tables" if is_table else "a list of numbers"
+
+
+def _bounds(notes: Iterable[Any]) -> Iterator[str]:
+    joint = ""
+    for note in notes:
+        if type(note) in _BOUNDS:
+            word, name = _BOUNDS[type(note)]
+            yield f"{joint}{word} {getattr(note, name):g}"
+            joint = "and "
+        elif isinstance(note, at.MinLen):
+            yield "that is not empty"
