@@ -15,8 +15,16 @@ SOUND: dict[str, Any] = {
     "tools": [
         {"number": 1, "kind": "ball", "diameter_mm": 8.0, "teeth": 2, "helix_deg": 30.0, "flute_length_mm": 20.0},
         {
-            **{"number": 7, "name": "rough", "kind": "bull", "diameter_mm": 16, "corner_radius_mm": 3, "teeth": 2},
-            **{"flute_length_mm": 30.0, "length_mm": 110.0, "pitch_deg": [170.0, 190.0], "runout_mm": 0.01},
+            "number": 7,
+            "name": "rough",
+            "kind": "bull",
+            "diameter_mm": 16,
+            "corner_radius_mm": 3,
+            "teeth": 2,
+            "flute_length_mm": 30.0,
+            "length_mm": 110.0,
+            "pitch_deg": [170.0, 190.0],
+            "runout_mm": 0.01,
             "shank": {"diameter_mm": 16.0, "length_mm": 40},
             "holder": [{"diameter_mm": 40.0, "length_mm": 30.0}, {"diameter_mm": 63.0, "length_mm": 20.0}],
         },

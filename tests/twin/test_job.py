@@ -38,12 +38,20 @@ def test_what_is_not_given_has_the_documented_default(tmp_path: Path) -> None:
     assert (job.program.dialect, job.program.arc_centres, job.program.units) == ("fanuc", "incremental", "mm")
     assert (job.program.block_delete, job.program.tool) == (False, 0)
     assert job.machine.model_dump() == {
-        **{"rapid_mm_min": 48000.0, "tool_change_s": 0.0, "home_mm": None, "start_mm": None},
+        "rapid_mm_min": 48000.0,
+        "tool_change_s": 0.0,
+        "home_mm": None,
+        "start_mm": None,
         "offsets": {"G54": (0.0, 0.0, 0.0)},
     }
     assert job.simulation.model_dump() == {
-        **{"slice_pitch_mm": 0.1, "step_mm": 0.1, "angle_step_deg": 1.0, "axial_step_mm": 0.1},
-        **{"engagement": "majority", "store": "fast", "preview_pitch_mm": None},
+        "slice_pitch_mm": 0.1,
+        "step_mm": 0.1,
+        "angle_step_deg": 1.0,
+        "axial_step_mm": 0.1,
+        "engagement": "majority",
+        "store": "fast",
+        "preview_pitch_mm": None,
     }
     assert job.output.model_dump() == {"mcap": None, "rrd": None, "force_on": "tool"}
     assert (job.stock.wcs, job.stock.stl_scale, job.stock.offset_mm) == ("G54", 1.0, (0.0, 0.0, 0.0))
