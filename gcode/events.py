@@ -62,7 +62,9 @@ class ArcMotion:
     """A circular or helical motion (G2/G3), never pre-chorded.
 
     Attributes:
-        centre_mm: centre; its coordinate along the plane's normal equals the start's.
+        centre_mm: centre as programmed; its coordinate along the plane's normal equals the start's. The distances of
+            start and end from it may differ by what the control tolerates (`Dialect.arc_tolerance`): then the radius
+            goes from one to the other in proportion to the angle, so that both ends are met.
         turns: signed count of turns, never 0: +1 is counter-clockwise about the plane's positive normal with more
             than 0 and at most one full turn, -1 clockwise, +2 one full turn more, and so on. Start and end at the
             same place in the plane make a full circle.

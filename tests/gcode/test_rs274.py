@@ -79,9 +79,9 @@ def canonical_calls(text: str, folder: Path) -> str:
 
 
 def theirs(output: str) -> list[Move]:
-    """The moves of a canonical listing, in machine coordinates, mm."""
+    """The moves of a canonical listing, in machine coordinates, mm, without those to where the tool is."""
     unit, plane = 1.0, PLANE_OF_NAME["XY"]
-    offset: Point = (0.0, 0.0, 0.0)
+    offset, length, at = (0.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0)
     moves: list[Move] = []
     for name, inside in re.findall(r"N\S*\s+(\w+)\(([^)]*)\)", output):
         numbers = [float(n) for n in re.findall(r"-?\d+\.\d+|-?\d+", inside)]
@@ -89,13 +89,19 @@ def theirs(output: str) -> list[Move]:
             unit = 25.4 if "INCH" in inside else 1.0
         elif name == "SET_G5X_OFFSET":
             offset = tuple(n * unit for n in numbers[1:4])
+        elif name == "USE_TOOL_LENGTH_OFFSET":
+            at = (at[0], at[1], at[2] + length - numbers[2] * unit)
+            length = numbers[2] * unit
         elif name == "SELECT_PLANE":
             plane = PLANE_OF_NAME[inside[-2:]]
         elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
             end = tuple(n * unit + o for n, o in zip(numbers[:3], offset, strict=True))
-            moves.append(Move("rapid" if name.endswith("TRAVERSE") else "feed", end))
+            if math.dist(at, end) > TOLERANCE_MM:
+                moves.append(Move("rapid" if name.endswith("TRAVERSE") else "feed", end))
+            at = end
         elif name == "ARC_FEED":
             moves.append(arc_of(numbers, unit, plane, offset))
+            at = moves[-1].end
     return moves
 
 
@@ -107,16 +113,6 @@ def arc_of(numbers: list[float], unit: float, plane: tuple[int, int, int, int], 
     centre[i], centre[j] = numbers[2] * unit + offset[i], numbers[3] * unit + offset[j]
     end[k] = numbers[5] * unit + offset[k]
     return Move("arc", tuple(end), code, tuple(centre), int(numbers[4]))
-
-
-def moving(moves: list[Move]) -> list[Move]:
-    """Without the moves to where the tool is; the listing has them."""
-    at, kept = (0.0, 0.0, 0.0), []
-    for move in moves:
-        if move.kind == "arc" or math.dist(at, move.end) > TOLERANCE_MM:
-            kept.append(move)
-        at = move.end
-    return kept
 
 
 def random_program(source: random.Random) -> str:
@@ -166,8 +162,8 @@ def random_arc(source: random.Random, unit: float, *, by_radius: bool) -> str:
 @pytest.mark.parametrize("seed", range(20))
 def test_random_programs(seed: int, tmp_path: Path) -> None:
     text = random_program(random.Random(seed))
-    expected = moving(theirs(canonical_calls(text, tmp_path)))
-    moves = moving(ours(text))
+    expected = theirs(canonical_calls(text, tmp_path))
+    moves = ours(text)
     assert len(moves) == len(expected)
     for number, (move, wanted) in enumerate(zip(moves, expected, strict=True)):
         assert (move.kind, move.plane, move.turns) == (wanted.kind, wanted.plane, wanted.turns), number
