@@ -158,16 +158,18 @@ class CellFamily:
                 return offsets, out[:written]
             room *= 4
 
-    def line_ends(self, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]) -> lines.LineEnds:
-        """Lines through a plane, as `SliceStore.line_ends` gives them."""
-        self.ensure(k, k + 1)
+    def line_ends(
+        self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+    ) -> lines.LineEnds:
+        """Lines through planes, as `SliceStore.line_ends` gives them."""
+        for k in planes[self.base[planes] < 0]:
+            self.ensure(int(k), int(k) + 1)
         kernel = line_kernels.cell_v_lines if fixed else line_kernels.cell_u_lines
-        place, cells = self.base[k], (self.state, self.start, self.size, self.pool)
         return lines.collect(
-            len(at_mm),
+            len(planes) * len(at_mm),
             lambda offsets, ends, slopes: kernel(
-                *(at_mm, window_mm, lines.MERGE_MM, place, self.grid, self.columns, self.tiles),
-                *(*cells, offsets, ends, slopes),
+                *(at_mm, window_mm, lines.MERGE_MM, self.base[planes], self.grid, self.columns, self.tiles),
+                *(self.state, self.start, self.size, self.pool, offsets, ends, slopes),
             ),
         )
 

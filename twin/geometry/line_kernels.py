@@ -48,7 +48,7 @@ def cell_u_lines(
     lines: FloatArray,
     window: tuple[float, float],
     merge: float,
-    cells: int,
+    planes: NDArray[np.int64],
     grid: FloatArray,
     columns: int,
     tiles: int,
@@ -64,7 +64,8 @@ def cell_u_lines(
 
     Args:
         window: only cells between these v are looked at.
-        offsets: shape (n + 1,), filled.
+        planes: shape (p,), the first cell of each plane.
+        offsets: shape (p n + 1,), filled: all lines of the first plane, then those of the second, ...
         ends, slopes: filled.
 
     Returns:
@@ -75,9 +76,10 @@ def cell_u_lines(
     t1 = min(tiles, int(math.floor((window[1] - grid[1]) / h)) + 1)
     n = 0
     offsets[0] = 0
-    for i in range(len(lines)):
+    for i in range(len(planes) * len(lines)):
         begin = n
-        u = lines[i]
+        cells = planes[i // len(lines)]
+        u = lines[i % len(lines)]
         column = int(math.floor((u - grid[0]) / h))
         if 0 <= column < columns:
             for tile in range(t0, t1):
@@ -111,7 +113,7 @@ def cell_v_lines(
     lines: FloatArray,
     window: tuple[float, float],
     merge: float,
-    cells: int,
+    planes: NDArray[np.int64],
     grid: FloatArray,
     columns: int,
     tiles: int,
@@ -133,9 +135,10 @@ def cell_v_lines(
     c1 = min(columns, int(math.floor((window[1] - grid[0]) / h)) + 1)
     n = 0
     offsets[0] = 0
-    for i in range(len(lines)):
+    for i in range(len(planes) * len(lines)):
         begin = n
-        v = lines[i]
+        cells = planes[i // len(lines)]
+        v = lines[i % len(lines)]
         tile = int(math.floor((v - grid[1]) / h))
         if 0 <= tile < tiles:
             for column in range(c0, c1):

@@ -63,14 +63,18 @@ class SliceStore(Protocol):
         """
 
     def line_ends(
-        self, axis: int, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+        self, axis: int, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> LineEnds:
-        """Where straight lines enter and leave the material of one slice, with the slope of its boundary there.
+        """Where straight lines enter and leave the material of slices, with the slope of the boundary there.
 
         Args:
+            planes: numbers of the slices.
             fixed: in-plane coordinate that is constant on a line, 0 for u, 1 for v.
             at_mm: shape (n,), that coordinate for each line.
             window_mm: only this range of the other coordinate is wanted; ends outside of it may be anything.
+
+        Returns:
+            all lines of the first slice, then those of the second, ...
         """
 
     def contains(self, points_mm: FloatArray, axis: int) -> NDArray[np.bool_]:

@@ -10,7 +10,7 @@ thinner than a cell may be lost.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
@@ -153,26 +153,35 @@ class _Block:
     def shape(self) -> tuple[int, int, int]:
         return len(self.nodes[0]), len(self.nodes[1]), len(self.nodes[2])
 
-    def lines(self, direction: int) -> Iterator[tuple[int, NDArray[np.int64], LineEnds]]:
-        """The lines along an axis as two families of slices see them.
+    def lines(self, direction: int, column: int) -> _Lines:
+        """All lines along an axis as one of the two families of slices that hold them sees them.
 
-        Yields:
-            column of the slopes (0 or 1: along the first or the second other axis), first node of each line, and ends.
+        Args:
+            column: 0 or 1: the family whose slopes are along the first or the second other axis.
         """
+        across = OTHER_AXES[direction][column]
+        axis = OTHER_AXES[direction][1 - column]
         strides = self.shape[1] * self.shape[2], self.shape[2], 1
-        for column, across in enumerate(OTHER_AXES[direction]):
-            axis = OTHER_AXES[direction][1 - column]
-            fixed = PLANE_AXES[axis].index(across)
-            rows = np.flatnonzero(self.planes[across] >= 0)
-            at = self.nodes[across][rows]
-            window = float(self.nodes[direction][0]), float(self.nodes[direction][-1])
-            for i in np.flatnonzero(self.planes[axis] >= 0):
-                ends = self.store.line_ends(axis, int(self.planes[axis][i]), fixed, at, window)
-                yield column, i * strides[axis] + rows * strides[across], ends
+        rows, slices = (np.flatnonzero(self.planes[a] >= 0) for a in (across, axis))
+        ends = self.store.line_ends(
+            axis,
+            self.planes[axis][slices],
+            PLANE_AXES[axis].index(across),
+            self.nodes[across][rows],
+            (float(self.nodes[direction][0]), float(self.nodes[direction][-1])),
+        )
+        bases = (slices[:, None] * strides[axis] + rows * strides[across]).ravel()
+        return _Lines(direction, column, strides[direction], bases, ends)
 
-    def stride(self, direction: int) -> int:
-        """Distance of neighbouring nodes along an axis in flat arrays."""
-        return (self.shape[1] * self.shape[2], self.shape[2], 1)[direction]
+
+class _Lines(NamedTuple):
+    """Lines along an axis, with the flat number of each one's first node and the step to the next."""
+
+    direction: int
+    column: int
+    stride: int
+    bases: NDArray[np.int64]
+    ends: LineEnds
 
 
 def _part(store: SliceStore, grid: PatchGrid, patch: Patch) -> _Part:
@@ -183,7 +192,7 @@ def _part(store: SliceStore, grid: PatchGrid, patch: Patch) -> _Part:
     x, y, z = (n[r] for n, r in zip(grid.lattice.nodes_mm, ranges, strict=True))
     px, py, pz = (p[r] for p, r in zip(grid.lattice.planes, ranges, strict=True))
     block = _Block(store, (x, y, z), (px, py, pz))
-    found = [list(block.lines(d)) for d in range(3)]
+    found = [block.lines(d, column) for d in range(3) for column in range(2)]
     inside = _inside(block, found)
     numbers = np.empty((3, len(inside)), dtype=np.int32)
     axes = np.empty(3 * len(inside), dtype=np.int8)
@@ -193,33 +202,27 @@ def _part(store: SliceStore, grid: PatchGrid, patch: Patch) -> _Part:
     return _contour(block, grid.lattice.shape, start, own, inside, numbers, axes, points, normals)
 
 
-_Lines = list[tuple[int, NDArray[np.int64], LineEnds]]
-
-
-def _inside(block: _Block, found: list[_Lines]) -> NDArray[np.bool_]:
+def _inside(block: _Block, found: Iterable[_Lines]) -> NDArray[np.bool_]:
     """Whether each node is in material, by the vote of all lines through it."""
     votes = np.zeros(math.prod(block.shape), dtype=np.uint8)
-    for d in range(3):
-        for _, bases, ends in found[d]:
-            kernels.vote(ends.offsets, ends.ends_mm, bases, block.stride(d), block.nodes[d], votes)
+    for d, _, stride, bases, ends in found:
+        kernels.vote(ends.offsets, ends.ends_mm, bases, stride, block.nodes[d], votes)
     inside: NDArray[np.bool_] = votes >= ENOUGH_VOTES
     return inside
 
 
 def _crossings(
     block: _Block,
-    found: list[_Lines],
+    found: Iterable[_Lines],
     inside: NDArray[np.bool_],
     numbers: NDArray[np.int32],
     axes: NDArray[np.int8],
 ) -> tuple[FloatArray, FloatArray]:
     """Points and outward unit normals of the crossed edges; without a crossing, the middle and no normal."""
     positions, leans = np.full(len(axes), np.nan), np.full((len(axes), 2), np.nan)
-    for d in range(3):
-        slack = MARGIN * float(np.diff(block.nodes[d]).max())
-        for column, bases, (offsets, ends, slopes) in found[d]:
-            line = bases, block.stride(d), block.nodes[d], slack
-            kernels.measure(offsets, ends, slopes, *line, inside, numbers[d], column, positions, leans)
+    for d, column, stride, bases, (offsets, ends, slopes) in found:
+        line = bases, stride, block.nodes[d], MARGIN * float(np.diff(block.nodes[d]).max())
+        kernels.measure(offsets, ends, slopes, *line, inside, numbers[d], column, positions, leans)
     points, normals = np.empty((len(axes), 3)), np.zeros((len(axes), 3))
     for d in range(3):
         nodes = np.flatnonzero(numbers[d] >= 0)

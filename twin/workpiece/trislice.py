@@ -64,7 +64,7 @@ class TriSlices(ABC):
 
     @abstractmethod
     def line_ends(
-        self, axis: int, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+        self, axis: int, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> LineEnds:
         """See `SliceStore.line_ends`."""
 
@@ -135,10 +135,10 @@ class CellSlices(TriSlices):
         return self._families[axis].crossings(k, u_mm)
 
     def line_ends(
-        self, axis: int, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+        self, axis: int, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> LineEnds:
         """See `SliceStore.line_ends`."""
-        return self._families[axis].line_ends(k, fixed, at_mm, window_mm)
+        return self._families[axis].line_ends(planes, fixed, at_mm, window_mm)
 
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
         """See `TriSlices.prepare`: planes are built when first needed; those that are not built hold nothing."""
@@ -221,10 +221,11 @@ class PolygonSlices(TriSlices):
         return offsets.astype(np.int64), np.concatenate(hits) if hits else np.zeros(0)
 
     def line_ends(
-        self, axis: int, k: int, fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+        self, axis: int, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> LineEnds:
         """See `SliceStore.line_ends`; the whole of every line, whatever the window."""
-        return ring_line_ends([np.array(p) / clip.UNITS_PER_MM for p in self._paths[axis][k]], fixed, at_mm)
+        rings = ([np.array(p) / clip.UNITS_PER_MM for p in self._paths[axis][k]] for k in planes)
+        return ring_line_ends(rings, fixed, at_mm)
 
     def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
         """See `TriSlices.count_votes`."""
