@@ -55,7 +55,7 @@ class Replay:
         slices = stock_slices(job)
         self._settings = machine_settings(job, slices)
         self._tools = {t.number: tool_setup(job, t, self._tolerance) for t in job.tools}
-        self.planned_time_s = sum(m.duration_s for m in self._checked_moves())
+        self.planned_time_s = math.fsum(self._checked_durations())
         self.workpiece = workpiece(job, slices)
         self._material = Material(self.workpiece, self._tolerance)
         self._rows = round(360.0 / job.simulation.angle_step_deg)
@@ -93,19 +93,21 @@ class Replay:
             rapid_mm_min=self.job.machine.rapid_mm_min,
         )
 
-    def _checked_moves(self) -> Iterator[Move]:
-        """The program's moves, with the tools they need checked."""
+    def _checked_durations(self) -> Iterator[float]:
+        """How long the program's motions and tool changes take, with the tools they need checked."""
         known = ", ".join(str(n) for n in sorted(self._tools))
         for item in self._program():
-            if isinstance(item, ToolChange) and item.tool not in self._tools and item.tool != 0:
-                raise ReplayError(f"{item.place}: tool T{item.tool} is not in the job, expected one of {known}")
-            if isinstance(item, Move):
+            if isinstance(item, ToolChange):
+                if item.tool not in self._tools and item.tool != 0:
+                    raise ReplayError(f"{item.place}: tool T{item.tool} is not in the job; expected one of {known}")
+                yield self.job.machine.tool_change_s
+            elif isinstance(item, Move):
                 if item.tool == 0 and not item.rapid and item.length_mm > 0.0:
                     raise ReplayError(
-                        f"{self.job.program.file}:{item.nc_line}: feed motion without a tool in the spindle, "
-                        "expected a tool change (T.. M6) before, or program.tool in the job"
+                        f"{self.job.program.file}:{item.nc_line}: feed motion without a tool in the spindle; "
+                        "expected a tool change (T.. M6) before it, or program.tool in the job"
                     )
-                yield item
+                yield item.duration_s
 
     def _event(self, event: Event) -> Iterator[Record]:
         if isinstance(event, Block):
@@ -219,7 +221,7 @@ class Replay:
             x, y, z = move.start_mm
             raise ReplayError(
                 f"{self.job.program.file}:{move.nc_line}: tool T{tool.number} ({tool.description}) begins inside the "
-                f"stock at X{x:g} Y{y:g} Z{z:g}, expected a start outside it (machine.start_mm, or the program's "
+                f"stock at X{x:g} Y{y:g} Z{z:g}; expected a start outside it (machine.start_mm, or the program's "
                 "tool change position)"
             )
 

@@ -21,7 +21,7 @@ from twin.cutting import kernels
 from twin.motion.sweep import Sweep, clear_swept
 from twin.record import Engagement
 from twin.tolerance import Tolerance
-from twin.tools.edges import CuttingEdges, arc_position
+from twin.tools.edges import CuttingEdges, meridian
 from twin.tools.shape import ToolShape
 from twin.workpiece.trislice import TriSlices
 
@@ -142,9 +142,9 @@ class Engager:
         after = np.minimum(columns + 1, len(middle) - 1)
 
         def points(part: FloatArray) -> FloatArray:
-            height = arc_position(self._shape, middle[columns] + part * (middle[after] - middle[columns]))
-            radius = self._shape.radius_mm(height)
-            return np.column_stack((radius * self._cos_theta[rows], radius * self._sin_theta[rows], height)) + tip
+            at = meridian(self._shape, middle[columns] + part * (middle[after] - middle[columns]))
+            x, y = at.radius_mm * self._cos_theta[rows], at.radius_mm * self._sin_theta[rows]
+            return np.column_stack((x, y, at.height_mm)) + tip
 
         part = self._halve(points, found, workpiece, pending)
         share = np.zeros((len(self._cos_theta), elements))

@@ -197,11 +197,18 @@ def summarise(
                 continue
             engaged = True
             out[NF_MAX] = max(out[NF_MAX], nf)
-            half = 0.5 * first * length[i] * sin_kappa[i]
-            out[Z_LOW] = min(out[Z_LOW], height[i] - half)
-            out[Z_HIGH] = max(out[Z_HIGH], height[i] + half)
-            out[SIDE_LOW] = min(out[SIDE_LOW], radius[i] * sideways)
-            out[SIDE_HIGH] = max(out[SIDE_HIGH], radius[i] * sideways)
+            rise = length[i] * sin_kappa[i]
+            if i == 0 or share[j, i - 1] >= first:
+                low = height[i] - 0.5 * rise
+                high = low + first * rise
+            else:
+                high = height[i] + 0.5 * rise
+                low = high - first * rise
+            wide = radius[i] if sin_kappa[i] <= 0.0 else radius[i] + (high - height[i]) * cos_kappa[i] / sin_kappa[i]
+            out[Z_LOW] = min(out[Z_LOW], low)
+            out[Z_HIGH] = max(out[Z_HIGH], high)
+            out[SIDE_LOW] = min(out[SIDE_LOW], wide * sideways)
+            out[SIDE_HIGH] = max(out[SIDE_HIGH], wide * sideways)
         if engaged:
             out[ARC] += 1.0
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +25,7 @@ class CuttingEdges:
         radius_mm: shape (n,), radius there.
         kappa_rad: shape (n,), angle between outward normal and tool axis.
         length_mm: shape (n,), length along the meridian: R dkappa on an arc, dz / sin(kappa) on a wall.
-        bounds_mm: shape (n + 1,), positions of the elements' ends along the meridian, from 0 at the lowest edge point.
+        bounds_mm: shape (n + 1,), positions of the elements' ends along the meridian, from 0 on the axis.
         lag_rad: shape (n,), helix lag z tan(helix) / R of constant lead (R the nominal radius).
         pitch_rad: shape (teeth,), angle of each tooth behind tooth 0, the first 0, increasing below 2 pi.
         runout_mm, runout_rad: offset of the cutter axis from the spindle axis, and its direction measured from the tip
@@ -79,9 +80,10 @@ def cutting_edges(
 ) -> CuttingEdges:
     """Divide a tool's edges into elements.
 
-    Elements end at multiples of ``axial_step_mm`` in height, so that depths of cut which are such multiples fall
-    between elements, and are cut shorter where the meridian is flat, so that none is longer than 1.2 ``axial_step_mm``
-    along the meridian either. The bottom of a flat tool has no elements: only the wall and the corner arc cut.
+    On the wall and the corner arc elements end at multiples of ``axial_step_mm`` in height, so that depths of cut which
+    are such multiples fall between elements, and are cut shorter where the meridian is flat, so that none is longer
+    than 1.2 ``axial_step_mm`` along the meridian either. The flat bottom of a tool carries end edges from the axis to
+    the corner: their normal looks down, so they cut in plunges and ramps only.
 
     Args:
         teeth: number of flutes, at least 1.
@@ -93,26 +95,70 @@ def cutting_edges(
     """
     if teeth < 1 or axial_step_mm <= 0.0:
         raise ToolError(f"cutting edges: teeth = {teeth}, axial_step_mm = {axial_step_mm}, expected both above 0")
-    levels = _levels(shape.height_mm, axial_step_mm)
-    s_levels = _arc_length(shape, levels)
-    pieces = np.maximum(1, np.ceil(np.diff(s_levels) / axial_step_mm - 0.2).astype(int))
-    bounds = np.concatenate(
-        [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(s_levels[:-1], s_levels[1:], pieces, strict=True)]
-        + [s_levels[-1:]]
-    )
-    z = arc_position(shape, 0.5 * (bounds[:-1] + bounds[1:]))
+    bounds = np.concatenate((_bottom_bounds(shape, axial_step_mm), _side_bounds(shape, axial_step_mm)))
+    points = meridian(shape, 0.5 * (bounds[:-1] + bounds[1:]))
     even = tuple(360.0 / teeth for _ in range(teeth))
+    lag = points.height_mm * math.tan(math.radians(helix_deg)) / shape.nominal_radius_mm
     return CuttingEdges(
-        z_mm=frozen(z, "z_mm", (None,)),
-        radius_mm=frozen(shape.radius_mm(z), "radius_mm", (None,)),
-        kappa_rad=frozen(shape.kappa_rad(z), "kappa_rad", (None,)),
+        z_mm=frozen(points.height_mm, "z_mm", (None,)),
+        radius_mm=frozen(points.radius_mm, "radius_mm", (None,)),
+        kappa_rad=frozen(points.kappa_rad, "kappa_rad", (None,)),
         length_mm=frozen(np.diff(bounds), "length_mm", (None,)),
         bounds_mm=frozen(bounds, "bounds_mm", (None,)),
-        lag_rad=frozen(z * math.tan(math.radians(helix_deg)) / shape.nominal_radius_mm, "lag_rad", (None,)),
+        lag_rad=frozen(lag, "lag_rad", (None,)),
         pitch_rad=frozen(_pitches(pitch_deg or even, teeth), "pitch_rad", (teeth,)),
         runout_mm=runout_mm,
         runout_rad=math.radians(runout_angle_deg),
     )
+
+
+class MeridianPoints(NamedTuple):
+    """Points of a tool's meridian: radius, height above the tip, angle kappa of the normal; each of shape (n,)."""
+
+    radius_mm: FloatArray
+    height_mm: FloatArray
+    kappa_rad: FloatArray
+
+
+def meridian(shape: ToolShape, s_mm: FloatArray) -> MeridianPoints:
+    """Points at lengths along the meridian from the axis: over the flat bottom, the corner arc, the wall.
+
+    Args:
+        s_mm: shape (n,), lengths.
+    """
+    on_arc = s_mm - shape.disc_mm
+    arc = shape.corner_mm * (0.5 * math.pi - shape.taper_rad)
+    kappa = np.clip(on_arc / shape.corner_mm, 0.0, None) if shape.corner_mm > 0.0 else np.zeros_like(s_mm)
+    on_wall = on_arc - arc
+    regions = [on_arc < 0.0, on_wall < 0.0]
+    return MeridianPoints(
+        np.select(
+            regions,
+            [s_mm, shape.disc_mm + shape.corner_mm * np.sin(kappa)],
+            shape.arc_radius_mm + on_wall * math.sin(shape.taper_rad),
+        ),
+        np.select(
+            regions,
+            [np.zeros_like(s_mm), shape.corner_mm * (1.0 - np.cos(kappa))],
+            shape.arc_height_mm + on_wall * math.cos(shape.taper_rad),
+        ),
+        np.select(regions, [np.zeros_like(s_mm), kappa], 0.5 * math.pi - shape.taper_rad),
+    )
+
+
+def _bottom_bounds(shape: ToolShape, step: float) -> FloatArray:
+    """Ends of the elements of the flat bottom but the last, which is the first of the side."""
+    if shape.disc_mm == 0.0:
+        return np.zeros(0)
+    return np.linspace(0.0, shape.disc_mm, max(1, math.ceil(shape.disc_mm / step)), endpoint=False)
+
+
+def _side_bounds(shape: ToolShape, step: float) -> FloatArray:
+    """Ends of the elements of corner arc and wall."""
+    levels = shape.disc_mm + _length_to_height(shape, _levels(shape.height_mm, step))
+    pieces = np.maximum(1, np.ceil(np.diff(levels) / step - 0.2).astype(int))
+    parts = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(levels[:-1], levels[1:], pieces, strict=True)]
+    return np.concatenate([*parts, levels[-1:]])
 
 
 def _pitches(pitch_deg: tuple[float, ...], teeth: int) -> FloatArray:
@@ -131,17 +177,9 @@ def _levels(height: float, step: float) -> FloatArray:
     return np.array(levels)
 
 
-def _arc_length(shape: ToolShape, z: FloatArray) -> FloatArray:
-    """Length along the meridian from the lowest edge point to heights z."""
+def _length_to_height(shape: ToolShape, z: FloatArray) -> FloatArray:
+    """Length along corner arc and wall from the end of the flat bottom to heights z."""
     on_arc = shape.corner_mm * shape.kappa_rad(np.minimum(z, shape.arc_height_mm * (1.0 - 1e-15)))
     at_end = shape.corner_mm * (0.5 * math.pi - shape.taper_rad)
     wall = (z - shape.arc_height_mm) / math.cos(shape.taper_rad)
     return np.asarray(np.where(z < shape.arc_height_mm, on_arc, at_end + wall))
-
-
-def arc_position(shape: ToolShape, s: FloatArray) -> FloatArray:
-    """Height above the tip of positions along the meridian, measured from its lowest edge point."""
-    end = shape.corner_mm * (0.5 * math.pi - shape.taper_rad)
-    arc = shape.corner_mm * (1.0 - np.cos(s / shape.corner_mm)) if shape.corner_mm > 0.0 else np.zeros_like(s)
-    wall = shape.arc_height_mm + (s - end) * math.cos(shape.taper_rad)
-    return np.asarray(np.where(s < end, arc, wall))

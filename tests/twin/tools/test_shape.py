@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from twin.errors import ToolError
-from twin.tools.edges import arc_position, cutting_edges
+from twin.tools.edges import cutting_edges, meridian
 from twin.tools.shape import ToolShape, tool_shape
 
 
@@ -45,17 +45,18 @@ def test_edge_elements_cover_the_meridian_once(corner: float, taper: float, step
     edges = cutting_edges(shape, teeth=2, axial_step_mm=step)
     arc = corner * (0.5 * math.pi - math.radians(taper))
     wall = (length - shape.arc_height_mm) / math.cos(math.radians(taper))
-    assert edges.length_mm.sum() == pytest.approx(arc + wall, rel=1e-9)
+    assert edges.length_mm.sum() == pytest.approx(4.0 - corner + arc + wall, rel=1e-9)
     assert np.all(edges.length_mm > 0.0)
     assert edges.length_mm.max() <= 1.2 * step * (1.0 + 1e-9)
-    assert np.all(np.diff(edges.z_mm) > 0.0)
+    assert np.all(np.diff(edges.z_mm) >= 0.0)
+    assert np.all(np.diff(edges.radius_mm) >= 0.0)
     assert edges.bounds_mm[0] == 0.0
 
 
 def test_depths_that_are_multiples_of_the_step_fall_between_elements() -> None:
     shape = tool_shape("ball", 8.0, 20.0)
     edges = cutting_edges(shape, teeth=2, axial_step_mm=0.1)
-    ends = arc_position(shape, edges.bounds_mm)
+    ends = meridian(shape, edges.bounds_mm).height_mm
     for depth in (0.1, 0.5, 2.0, 4.0, 11.3):
         assert np.abs(ends - depth).min() < 1e-9
 
@@ -64,12 +65,14 @@ def test_element_positions_lie_on_the_tool_and_lag_behind_the_tip() -> None:
     shape = tool_shape("flat", 10.0, 12.0)
     edges = cutting_edges(shape, teeth=4, helix_deg=30.0, axial_step_mm=0.5)
     at = edges.positions_mm(1, 0.3)
-    assert np.hypot(at[:, 0], at[:, 1]) == pytest.approx(np.full(len(at), 5.0))
+    wall = edges.z_mm > 0.0
+    assert np.hypot(at[:, 0], at[:, 1])[wall] == pytest.approx(np.full(wall.sum(), 5.0))
     theta = edges.theta_rad(1, 0.3)
     # M3 turns towards smaller angles; a lag keeps an element at a larger one
     assert theta == pytest.approx(-0.3 + math.pi / 2.0 + edges.z_mm * math.tan(math.radians(30.0)) / 5.0)
     assert edges.theta_rad(1, -0.3, clockwise=False) == pytest.approx(-theta)
-    assert edges.normals(1, 0.3)[:, :2] * 5.0 == pytest.approx(at[:, :2])
+    assert edges.normals(1, 0.3)[wall, :2] * 5.0 == pytest.approx(at[wall, :2])
+    assert edges.normals(1, 0.3)[~wall] == pytest.approx(np.tile([0.0, 0.0, -1.0], ((~wall).sum(), 1)))
 
 
 def test_uneven_teeth_stand_where_their_pitches_say() -> None:
