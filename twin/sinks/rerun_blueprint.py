@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
-from rerun.blueprint.encodings import ComponentSourceKind, VisualizerComponentMapping
+from rerun.blueprint.encodings import ComponentSourceKind, TextLogColumnKind, VisualizerComponentMapping
 
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
@@ -23,6 +23,7 @@ _CLOSE_S = 0.04
 #: The blueprint for archives that comes with the program; made by ``python -m twin.sinks.rerun_blueprint``.
 SHIPPED = Path(__file__).with_name("twin.rbl")
 
+_WHOLE_RUN = rr.TimeRange(start=rr.TimeRangeBoundary.infinite(), end=rr.TimeRangeBoundary.infinite())
 _UP_TO_CURSOR = [
     rr.VisibleTimeRange(name, start=rr.TimeRangeBoundary.infinite(), end=rr.TimeRangeBoundary.cursor_relative())
     for name in layout.TIMELINES
@@ -42,7 +43,7 @@ def blueprint(stock_bounds_mm: FloatArray | None = None, *, timeline: str = layo
                 _part(stock_bounds_mm),
                 _curves("Cutting force on the tool", layout.FORCES),
                 _curves("Spindle torque", (layout.TORQUE,)),
-                row_shares=[11, 5, 3],
+                row_shares=[9, 7, 3],
             ),
             rrb.Vertical(
                 rrb.Tabs(_blocks(timeline), _summary()),
@@ -102,7 +103,8 @@ def _eye(stock_bounds_mm: FloatArray) -> rrb.EyeControls3D:
 
 def _blocks(timeline: str) -> rrb.TextLogView:
     """NC blocks and collisions; lines of an archive have no colours, so their level stands beside."""
-    columns = ["Body"] if timeline == layout.TIME else ["LogLevel", "Body"]
+    body, level = TextLogColumnKind.Body, TextLogColumnKind.LogLevel
+    columns = [body] if timeline == layout.TIME else [level, body]
     return rrb.TextLogView(
         origin="/",
         contents=["nc/**", "collision/**"],
@@ -132,7 +134,7 @@ def _curves(name: str, series: tuple[layout.Series, ...], *, close: bool = False
         name=name,
         plot_legend=rrb.PlotLegend(visible=not close, corner=rrb.Corner2D.RightTop),
         time_ranges=around if close else None,
-        axis_x=None if close else rrb.TimeAxis(link="LinkToGlobal"),
+        axis_x=None if close else rrb.TimeAxis(view_range=_WHOLE_RUN),
         overrides={layout.ARCHIVE_FORCE: [_archive_curve(s) for s in series]},
     )
 

@@ -11,11 +11,12 @@ import rerun as rr
 from twin.arrays import FloatArray
 from twin.record import RunHeader
 from twin.sinks import rerun_layout as layout
-from twin.sinks.rerun_shapes import box_edges, class_colors, class_force_n, force_class
+from twin.sinks.rerun_shapes import box_edges, class_colors, class_force_n, force_class, label_step_n
 
-#: Parts of the scale, and numbers beside it.
+#: Parts of the scale.
 _BARS = 28
-_LABELS = 5
+#: Rounding that a number at the end of the scale survives.
+_ABOVE = 1.0 + 1e-9
 _UP = np.array((0.0, 0.0, 1.0))
 
 
@@ -52,10 +53,12 @@ def draw_scale(recording: rr.RecordingStream, stock_bounds_mm: FloatArray, end_n
     bar_colors = [colors[max(1, force_class(float(f)))] for f in forces]
     bar = rr.LineStrips3D(strips, colors=bar_colors, radii=rr.Radius.ui_points(4.0))
     recording.log(layout.SCALE, bar, static=True, strict=True)
-    marks = np.linspace(0.0, 1.0, _LABELS)
+    step_n = label_step_n(end_n)
+    values = np.arange(round(end_n / step_n) + 1) * step_n
+    values = values[values <= end_n * _ABOVE]
     numbers = rr.Points3D(
-        beside + marks[:, None] * height * _UP,
-        labels=[f"{m * end_n:.3g} N" for m in marks],
+        beside + (values / end_n * height)[:, None] * _UP,
+        labels=[f"{v:.3g} N" for v in values],
         colors=layout.TEXT_COLOR,
         radii=rr.Radius.ui_points(0.0),
         show_labels=True,

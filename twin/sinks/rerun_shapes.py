@@ -82,6 +82,12 @@ def scale_end_n(force_n: float) -> float:
     return next((n * decade for n in _NICE if n * decade >= force_n), 10.0 * decade)
 
 
+def label_step_n(end_n: float) -> float:
+    """The largest 1, 2 or 5 times a power of ten that goes at least three times into a scale."""
+    decade = 10.0 ** math.floor(math.log10(end_n))
+    return next(step * decade for step in (2.0, 1.0, 0.5, 0.2) if 3.0 * step * decade <= end_n)
+
+
 def class_colors(end_n: float) -> list[Rgb]:
     """Colour of every class, class 0 first, on a scale from 0 to ``end_n``, linear in the force."""
     at = np.clip([class_force_n(k) / end_n for k in range(CLASSES + 1)], 0.0, 1.0) * (len(_MAP) - 1)

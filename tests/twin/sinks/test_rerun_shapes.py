@@ -20,6 +20,7 @@ from twin.sinks.rerun_shapes import (
     class_colors,
     class_force_n,
     force_class,
+    label_step_n,
     scale_end_n,
     tool_mesh,
 )
@@ -70,6 +71,13 @@ def test_a_scale_ends_at_a_round_number_above_the_force(force_n: float) -> None:
     end = scale_end_n(force_n)
     assert force_n <= end <= 1.4 * force_n
     assert float(f"{end:.1e}") == pytest.approx(end)
+
+
+@pytest.mark.parametrize(
+    ("end_n", "step_n"), [(10.0, 2.0), (120.0, 20.0), (150.0, 50.0), (250.0, 50.0), (6.0, 2.0), (8e3, 2e3)]
+)
+def test_numbers_on_the_scale_are_round(end_n: float, step_n: float) -> None:
+    assert label_step_n(end_n) == pytest.approx(step_n)
 
 
 def test_no_force_has_the_colour_of_air_and_the_end_of_the_scale_its_last() -> None:
