@@ -1,4 +1,4 @@
-"""Where straight lines along u or v enter and leave the material of a plane, and how the boundary leans there; compiled.
+"""Where lines along u or v enter and leave the material of a plane, and how the boundary leans there; compiled.
 
 Ends come in pairs: material from the first to the second, from the third to the fourth, and so on. Two ends that are
 no further apart than ``merge`` cancel, be it a sliver or a slit. ``slopes`` hold the boundary's d(end) / d(line
@@ -32,7 +32,7 @@ def _sort(ends: FloatArray, slopes: FloatArray, first: int, last: int) -> None:
 
 @njit(cache=True, nogil=True)
 def _join(ends: FloatArray, slopes: FloatArray, begin: int, first: int, last: int, merge: float) -> int:
-    """Append the ends [first, last) to those from ``begin`` on, cancelling neighbours that meet; returns the new end."""
+    """Append the ends [first, last) to those from ``begin`` on, without neighbours that meet; returns the new end."""
     n = first
     for i in range(first, last):
         if n > begin and ends[i] - ends[n - 1] <= merge:
@@ -72,15 +72,15 @@ def cell_u_lines(
         how many ends were written, or -1 when they do not fit.
     """
     h = grid[2]
-    t0 = max(0, int(math.floor((window[0] - grid[1]) / h)))
-    t1 = min(tiles, int(math.floor((window[1] - grid[1]) / h)) + 1)
+    t0 = max(0, math.floor((window[0] - grid[1]) / h))
+    t1 = min(tiles, math.floor((window[1] - grid[1]) / h) + 1)
     n = 0
     offsets[0] = 0
     for i in range(len(planes) * len(lines)):
         begin = n
         cells = planes[i // len(lines)]
         u = lines[i % len(lines)]
-        column = int(math.floor((u - grid[0]) / h))
+        column = math.floor((u - grid[0]) / h)
         if 0 <= column < columns:
             for tile in range(t0, t1):
                 cell = cells + column * tiles + tile
@@ -131,15 +131,15 @@ def cell_v_lines(
     lie above the line, and off where it stops to.
     """
     h = grid[2]
-    c0 = max(0, int(math.floor((window[0] - grid[0]) / h)))
-    c1 = min(columns, int(math.floor((window[1] - grid[0]) / h)) + 1)
+    c0 = max(0, math.floor((window[0] - grid[0]) / h))
+    c1 = min(columns, math.floor((window[1] - grid[0]) / h) + 1)
     n = 0
     offsets[0] = 0
     for i in range(len(planes) * len(lines)):
         begin = n
         cells = planes[i // len(lines)]
         v = lines[i % len(lines)]
-        tile = int(math.floor((v - grid[1]) / h))
+        tile = math.floor((v - grid[1]) / h)
         if 0 <= tile < tiles:
             for column in range(c0, c1):
                 cell = cells + column * tiles + tile

@@ -21,7 +21,7 @@ class LineEnds(NamedTuple):
     Attributes:
         offsets: shape (lines + 1,); line i has the values from ``offsets[i]`` to ``offsets[i + 1]``, an even number.
         ends_mm: increasing on each line: material from the first to the second, from the third to the fourth, ...
-        slopes: d(end) / d(position of the line) of the boundary at each end; 0 where the boundary is square to the line.
+        slopes: d(end) / d(position of the line) of the boundary at each end; 0 where it is square to the line.
     """
 
     offsets: NDArray[np.int64]
@@ -70,5 +70,6 @@ def _through(rings: Sequence[FloatArray], fixed: int, at_mm: FloatArray) -> Line
     edges = [np.column_stack((r, np.roll(r, -1, axis=0))) for r in rings]
     rows = np.concatenate(edges) if edges else np.empty((0, 4))
     return collect(
-        len(at_mm), lambda offsets, ends, slopes: kernels.ring_lines(at_mm, fixed, MERGE_MM, rows, offsets, ends, slopes)
+        len(at_mm),
+        lambda offsets, ends, slopes: kernels.ring_lines(at_mm, fixed, MERGE_MM, rows, offsets, ends, slopes),
     )

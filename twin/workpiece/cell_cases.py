@@ -51,8 +51,8 @@ def _faces() -> list[list[int]]:
     """The corners of each face in order round it."""
     faces = []
     for d, (p, q) in enumerate(OTHER_AXES):
-        for side in (0, 1 << d):
-            faces.append([side, side | 1 << p, side | 1 << p | 1 << q, side | 1 << q])
+        rim = [0, 1 << p, 1 << p | 1 << q, 1 << q]
+        faces += [rim, [1 << d | corner for corner in rim]]
     return faces
 
 

@@ -127,7 +127,8 @@ def threemf_bytes(vertices_mm: ArrayLike, triangles: ArrayLike) -> bytes:
     """A mesh as 3MF, in mm."""
     mesh = _trimesh(vertices_mm, triangles)
     mesh.units = "millimeter"
-    return bytes(trimesh.Scene(mesh).export(file_type="3mf"))
+    data: bytes = trimesh.exchange.threemf.export_3MF(mesh)  # type: ignore[no-untyped-call]
+    return data
 
 
 def _trimesh(vertices_mm: ArrayLike, triangles: ArrayLike) -> trimesh.Trimesh:
@@ -142,11 +143,11 @@ def _stl_corners(name: str, data: bytes) -> FloatArray:
     """
     if not data:
         raise MeshError(f"{name}: is empty; expected an STL file")
-    if not data.lstrip()[:5].lower() == b"solid" or b"\0" in data:
+    if data.lstrip()[:5].lower() != b"solid" or b"\0" in data:
         _check_binary_length(name, data)
     try:
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="stl", process=False)
-        corners = np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)]
+        corners: FloatArray = np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)]
     except Exception as error:  # trimesh and its helpers raise many kinds
         raise MeshError(f"{name}: is no STL file ({error}); expected binary or ASCII STL") from error
     if len(corners) == 0:
@@ -166,5 +167,5 @@ def _check_binary_length(name: str, data: bytes) -> None:
     wanted = _BINARY_HEADER + _BINARY_TRIANGLE * count
     if len(data) != wanted:
         raise MeshError(
-            f"{name}: is no whole STL file: {len(data)} bytes; expected {wanted} for the {count} triangles of its header"
+            f"{name}: is no STL file: {len(data)} bytes; expected {wanted} for {count} triangles, as its header says"
         )

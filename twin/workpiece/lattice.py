@@ -1,4 +1,4 @@
-"""The lattice that surfaces are drawn on: nodes where slices of all three families meet, in blocks that can be drawn alone."""
+"""The lattice that surfaces are drawn on: nodes where slices of all three families meet, in blocks."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ CELLS_ALONG = 200
 class Lattice:
     """Positions of the nodes along x, y and z.
 
-    The first and the last node of each axis lie half a slice pitch outside of the stock's box; all others lie on slices,
-    among them the first and the last one.
+    The first and the last node of each axis lie half a slice pitch outside of the stock's box; all others lie on
+    slices, among them the first and the last one.
 
     Attributes:
         nodes_mm: increasing, one array an axis.
@@ -98,7 +98,9 @@ class PatchGrid:
 
     def cells(self, patch: Patch) -> tuple[tuple[int, int], tuple[int, int]]:
         """First and one past the last cell of a block along x and y."""
-        ends = [(i * self.size, min((i + 1) * self.size, n - 1)) for i, n in zip(patch, self.lattice.shape, strict=False)]
+        ends = [
+            (i * self.size, min((i + 1) * self.size, n - 1)) for i, n in zip(patch, self.lattice.shape, strict=False)
+        ]
         return ends[0], ends[1]
 
     def touching(self, low_mm: FloatArray, high_mm: FloatArray) -> Iterator[Patch]:

@@ -1,42 +1,29 @@
 """The surface of the machined part as triangles, from its slices.
 
 Nodes of a lattice lie where slices of all three families meet. The slices tell which nodes are in material, where the
-surface crosses the lattice's edges, and how it leans there. Every cell with a surface gets a vertex nearest to the tangent
-planes at its crossings (dual contouring: Ju, Losasso, Schaefer and Warren, 2002), one for each sheet of the surface
-(Nielson's dual marching cubes, 2004), so flat faces come out flat, edges sharp, and the whole closed. Details
-thinner than a cell may be lost.
+surface crosses the lattice's edges, and how it leans there. Every cell with a surface gets a vertex nearest to the
+tangent planes at its crossings (dual contouring: Ju, Losasso, Schaefer and Warren, 2002), one for each sheet of the
+surface (Nielson's dual marching cubes, 2004), so flat faces come out flat, edges sharp, and the whole closed: every
+edge is run through as often one way as the other, though sheets that touch may share one. Details thinner than a
+cell may be lost.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
-from dataclasses import dataclass
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry.lines import LineEnds
 from twin.record import WorkpiecePatch
-from twin.workpiece import meshing_kernels as kernels
-from twin.workpiece.cell_cases import OTHER_AXES, sheet_table
+from twin.workpiece.contour import MARGIN, SurfacePart, draw_part
 from twin.workpiece.lattice import Lattice, Patch, PatchGrid
-from twin.workpiece.store import PLANE_AXES, SliceStore
+from twin.workpiece.store import SliceStore
 
 #: Cells of a block along x and y when only what changed is drawn, and when all is.
 PATCH_CELLS = 32
 WHOLE_CELLS = 64
-#: Normals within this angle of their mean make a smooth surface.
-SMOOTH_RAD = math.radians(8.0)
-#: Relative eigenvalue of the tangent planes' least squares from which a direction fully counts: normals 35 degrees apart.
-SHARP = 0.1
-#: Part of a cell that vertices keep from its faces, and by which a crossing may miss its edge.
-MARGIN = 1e-3
-#: A node is in material when at least this many of the six lines through it say so.
-ENOUGH_VOTES = 3
 
 
 class SurfaceMesh(NamedTuple):
@@ -53,24 +40,6 @@ class SurfaceMesh(NamedTuple):
     triangles: NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Part:
-    """The surface in one block: vertices of its cells and of the cells before it, triangles of its own edges.
-
-    Attributes:
-        creased: whether the surface has an edge or a corner at a vertex.
-        names: cell and sheet of each vertex in the whole lattice, one number.
-        leading: normal of the crossing that each triangle stands for.
-    """
-
-    vertices: FloatArray
-    normals: FloatArray
-    creased: NDArray[np.bool_]
-    names: NDArray[np.int64]
-    triangles: NDArray[np.int32]
-    leading: FloatArray
-
-
 def surface_mesh(store: SliceStore, pitch_mm: float | None = None) -> SurfaceMesh:
     """The whole surface as one closed mesh, no two vertices at one place.
 
@@ -81,8 +50,9 @@ def surface_mesh(store: SliceStore, pitch_mm: float | None = None) -> SurfaceMes
         StockError: a pitch that is not above 0.
     """
     grid = patch_grid(store, pitch_mm=pitch_mm, size=WHOLE_CELLS)
-    parts = [_part(store, grid, patch) for patch in grid.patches]
-    names, where, places = np.unique(np.concatenate([p.names for p in parts]), return_index=True, return_inverse=True)
+    parts = [draw_part(store, grid, patch) for patch in grid.patches]
+    names = np.concatenate([p.names for p in parts])
+    _, where, places = np.unique(names, return_index=True, return_inverse=True)
     firsts = np.concatenate(([0], np.cumsum([len(p.names) for p in parts])))
     triangles = [places[p.triangles + f] for p, f in zip(parts, firsts, strict=False)]
     vertices = np.concatenate([p.vertices for p in parts])[where]
@@ -108,7 +78,7 @@ def patch_mesh(store: SliceStore, grid: PatchGrid, patch: Patch, t_s: float = 0.
 
     Neighbouring blocks meet without a gap: both compute the vertices between them from the same slices.
     """
-    part = _part(store, grid, patch)
+    part = draw_part(store, grid, patch)
     split = part.creased[part.triangles]
     extra = np.flatnonzero(split.ravel())
     triangles = part.triangles.ravel().copy()
@@ -116,17 +86,17 @@ def patch_mesh(store: SliceStore, grid: PatchGrid, patch: Patch, t_s: float = 0.
     vertices = np.concatenate((part.vertices, part.vertices[triangles[extra]]))
     normals = np.concatenate((part.normals, own))
     triangles[extra] = len(part.vertices) + np.arange(len(extra))
-    used, triangles = np.unique(triangles, return_inverse=True)
+    used, places = np.unique(triangles, return_inverse=True)
     return WorkpiecePatch(
         t_s=t_s,
         patch=patch.name,
         vertices_mm=vertices[used].astype(np.float32),
         normals=normals[used].astype(np.float32),
-        triangles=triangles.reshape(-1, 3).astype(np.uint32),
+        triangles=places.reshape(-1, 3).astype(np.uint32),
     )
 
 
-def _face_normals(part: _Part) -> FloatArray:
+def _face_normals(part: SurfacePart) -> FloatArray:
     """Unit normals of triangles; that of the crossing where a triangle is too thin to tell."""
     a, b, c = (part.vertices[part.triangles[:, i]] for i in range(3))
     cross = np.cross(b - a, c - a)
@@ -134,145 +104,3 @@ def _face_normals(part: _Part) -> FloatArray:
     longest = np.maximum(np.linalg.norm(b - a, axis=1), np.linalg.norm(c - a, axis=1))[:, None]
     thin = length <= MARGIN * longest**2
     return np.where(thin, part.leading, cross / np.where(thin, 1.0, length))
-
-
-@cache
-def _sheets() -> NDArray[np.int8]:
-    return sheet_table()
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Block:
-    """Nodes of the lattice that one block needs: from one cell before it to its end."""
-
-    store: SliceStore
-    nodes: tuple[FloatArray, FloatArray, FloatArray]
-    planes: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
-
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        return len(self.nodes[0]), len(self.nodes[1]), len(self.nodes[2])
-
-    def lines(self, direction: int, column: int) -> _Lines:
-        """All lines along an axis as one of the two families of slices that hold them sees them.
-
-        Args:
-            column: 0 or 1: the family whose slopes are along the first or the second other axis.
-        """
-        across = OTHER_AXES[direction][column]
-        axis = OTHER_AXES[direction][1 - column]
-        strides = self.shape[1] * self.shape[2], self.shape[2], 1
-        rows, slices = (np.flatnonzero(self.planes[a] >= 0) for a in (across, axis))
-        ends = self.store.line_ends(
-            axis,
-            self.planes[axis][slices],
-            PLANE_AXES[axis].index(across),
-            self.nodes[across][rows],
-            (float(self.nodes[direction][0]), float(self.nodes[direction][-1])),
-        )
-        bases = (slices[:, None] * strides[axis] + rows * strides[across]).ravel()
-        return _Lines(direction, column, strides[direction], bases, ends)
-
-
-class _Lines(NamedTuple):
-    """Lines along an axis, with the flat number of each one's first node and the step to the next."""
-
-    direction: int
-    column: int
-    stride: int
-    bases: NDArray[np.int64]
-    ends: LineEnds
-
-
-def _part(store: SliceStore, grid: PatchGrid, patch: Patch) -> _Part:
-    """Draw one block."""
-    (x0, x1), (y0, y1) = grid.cells(patch)
-    start = max(0, x0 - 1), max(0, y0 - 1)
-    ranges = slice(start[0], x1 + 1), slice(start[1], y1 + 1), slice(None)
-    x, y, z = (n[r] for n, r in zip(grid.lattice.nodes_mm, ranges, strict=True))
-    px, py, pz = (p[r] for p, r in zip(grid.lattice.planes, ranges, strict=True))
-    block = _Block(store, (x, y, z), (px, py, pz))
-    found = [block.lines(d, column) for d in range(3) for column in range(2)]
-    inside = _inside(block, found)
-    numbers = np.empty((3, len(inside)), dtype=np.int32)
-    axes = np.empty(3 * len(inside), dtype=np.int8)
-    axes = axes[: kernels.number_edges(inside, block.shape, numbers, axes)]
-    points, normals = _crossings(block, found, inside, numbers, axes)
-    own = x0 - start[0], y0 - start[1]
-    return _contour(block, grid.lattice.shape, start, own, inside, numbers, axes, points, normals)
-
-
-def _inside(block: _Block, found: Iterable[_Lines]) -> NDArray[np.bool_]:
-    """Whether each node is in material, by the vote of all lines through it."""
-    votes = np.zeros(math.prod(block.shape), dtype=np.uint8)
-    for d, _, stride, bases, ends in found:
-        kernels.vote(ends.offsets, ends.ends_mm, bases, stride, block.nodes[d], votes)
-    inside: NDArray[np.bool_] = votes >= ENOUGH_VOTES
-    return inside
-
-
-def _crossings(
-    block: _Block,
-    found: Iterable[_Lines],
-    inside: NDArray[np.bool_],
-    numbers: NDArray[np.int32],
-    axes: NDArray[np.int8],
-) -> tuple[FloatArray, FloatArray]:
-    """Points and outward unit normals of the crossed edges; without a crossing, the middle and no normal."""
-    positions, leans = np.full(len(axes), np.nan), np.full((len(axes), 2), np.nan)
-    for d, column, stride, bases, (offsets, ends, slopes) in found:
-        line = bases, stride, block.nodes[d], MARGIN * float(np.diff(block.nodes[d]).max())
-        kernels.measure(offsets, ends, slopes, *line, inside, numbers[d], column, positions, leans)
-    points, normals = np.empty((len(axes), 3)), np.zeros((len(axes), 3))
-    for d in range(3):
-        nodes = np.flatnonzero(numbers[d] >= 0)
-        mine = numbers[d][nodes]
-        places = np.unravel_index(nodes, block.shape)
-        for axis in range(3):
-            points[mine, axis] = block.nodes[axis][places[axis]]
-        middle = 0.5 * (points[mine, d] + block.nodes[d][places[d] + 1])
-        points[mine, d] = np.where(np.isnan(positions[mine]), middle, positions[mine])
-        sense = np.sign(axes[mine]) * ~np.isnan(positions[mine])
-        normals[mine, d] = sense
-        for column, across in enumerate(OTHER_AXES[d]):
-            normals[mine, across] = -sense * np.nan_to_num(leans[mine, column])
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return points, normals / np.where(length > 0.0, length, 1.0)
-
-
-def _contour(
-    block: _Block,
-    whole: tuple[int, int, int],
-    start: tuple[int, int],
-    own: tuple[int, int],
-    inside: NDArray[np.bool_],
-    numbers: NDArray[np.int32],
-    axes: NDArray[np.int8],
-    points: FloatArray,
-    normals: FloatArray,
-) -> _Part:
-    """Vertices and triangles from the crossings of a block."""
-    room = 4 * len(axes) // 3 + 1  # a sheet has at least three crossings, a crossing lies in at most four cells
-    first, cases = np.empty(len(inside), dtype=np.int32), np.empty(len(inside), dtype=np.uint8)
-    vertices, vertex_normals = np.empty((room, 3)), np.empty((room, 3))
-    creased, cells = np.empty(room, dtype=np.bool_), np.empty(room, dtype=np.int64)
-    limits = np.array([math.cos(SMOOTH_RAD), math.tan(SMOOTH_RAD) ** 2, SHARP])
-    n = kernels.place_vertices(
-        *(inside, *block.nodes, numbers, points, normals, _sheets(), limits, MARGIN),
-        *(first, cases, vertices, vertex_normals, creased, cells),
-    )
-    quads = np.empty((len(axes), 5), dtype=np.int32)
-    quads = quads[: kernels.join_quads(block.shape, own, numbers, axes, _sheets(), first, cases, quads)]
-    triangles = np.empty((2 * len(quads), 3), dtype=np.int32)
-    kernels.split_quads(quads, vertices, creased, triangles)
-    used, places = np.unique(triangles, return_inverse=True)
-    i, j, k = np.unravel_index(cells[:n] // 4, block.shape)
-    names = 4 * np.ravel_multi_index((i + start[0], j + start[1], k), whole) + cells[:n] % 4
-    return _Part(
-        vertices=vertices[used],
-        normals=vertex_normals[used],
-        creased=creased[used],
-        names=names[used],
-        triangles=places.reshape(-1, 3).astype(np.int32),
-        leading=np.repeat(normals[quads[:, 4]], 2, axis=0),
-    )

@@ -1,0 +1,257 @@
+"""A surface from the crossings of a lattice's edges (dual contouring); compiled.
+
+Arrays are flat as in `twin.workpiece.lattice_kernels`; a lattice cell is named by its lowest node. Each crossed edge
+has a point and a unit normal that points out of the material, or a normal of zero where nothing is known.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+
+
+@njit(cache=True, nogil=True)
+def _clamped(x: float, low: float, high: float, inset: float) -> float:
+    """Keep x between two cell faces, a part ``inset`` of their distance from both."""
+    return min(max(x, low + inset * (high - low)), high - inset * (high - low))
+
+
+@njit(cache=True, nogil=True)
+def _dot(a: FloatArray, b: FloatArray) -> float:
+    product: float = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return product
+
+
+@njit(cache=True, nogil=True)
+def _centre(points: FloatArray, normals: FloatArray, normal: FloatArray) -> None:
+    """Shift points so that their mean is 0; fill the unit mean normal (0 where the normals cancel).
+
+    Args:
+        points: shape (n + 1, 3), the mean goes to the last row.
+        normals: shape (n, 3).
+    """
+    n = len(normals)
+    for a in range(3):
+        points[n, a] = points[:n, a].mean()
+        normal[a] = normals[:, a].sum()
+        for i in range(n):
+            points[i, a] -= points[n, a]
+    length = math.sqrt(_dot(normal, normal))
+    if length > 0.0:
+        for a in range(3):
+            normal[a] /= length
+
+
+@njit(cache=True, nogil=True)
+def _along_normal(points: FloatArray, normals: FloatArray, normal: FloatArray, shift: FloatArray) -> float:
+    """The place on the mean normal nearest to the tangent planes; returns the least cosine of a normal to the mean."""
+    smallest, top, bottom = 1.0, 0.0, 0.0
+    for i in range(len(normals)):
+        along = _dot(normals[i], normal)
+        if along != 0.0 or _dot(normals[i], normals[i]) > 0.0:
+            smallest = min(smallest, along)
+        top += along * _dot(normals[i], points[i])
+        bottom += along * along
+    for a in range(3):
+        shift[a] = normal[a] * top / bottom if bottom > 0.0 else 0.0
+    return smallest
+
+
+@njit(cache=True, nogil=True)
+def _nearest(points: FloatArray, normals: FloatArray, ramp: tuple[float, float], shift: FloatArray) -> None:
+    """The place nearest to the tangent planes in directions that they determine well; the others fade out smoothly.
+
+    Args:
+        ramp: relative eigenvalues of the least squares from which a direction begins to count, and fully does.
+    """
+    matrix, right = np.zeros((3, 3)), np.zeros(3)
+    for i in range(len(normals)):
+        off = _dot(normals[i], points[i])
+        for a in range(3):
+            right[a] += normals[i, a] * off
+            for b in range(3):
+                matrix[a, b] += normals[i, a] * normals[i, b]
+    values, vectors = np.linalg.eigh(matrix)
+    shift[:] = 0.0
+    for m in range(3):
+        share = (values[m] / values[2] - ramp[0]) / (ramp[1] - ramp[0])
+        if share > 0.0:
+            share = min(share, 1.0)
+            weight = share * share * (3.0 - 2.0 * share) / values[m]
+            dot = vectors[0, m] * right[0] + vectors[1, m] * right[1] + vectors[2, m] * right[2]
+            for a in range(3):
+                shift[a] += weight * dot * vectors[a, m]
+
+
+@njit(cache=True, nogil=True)
+def _gather(
+    node: int,
+    strides: tuple[int, int, int],
+    case: int,
+    sheet: int,
+    sheets: NDArray[np.int8],
+    numbers: NDArray[np.int32],
+    own: NDArray[np.int32],
+) -> int:
+    """The crossed edges of one sheet in a cell; returns how many."""
+    n = 0
+    for e in range(12):
+        if sheets[case, e] == sheet:
+            d, low, high = e >> 2, e & 1, e >> 1 & 1
+            p = 1 if d == 0 else 0
+            q = 1 if d == 2 else 2
+            own[n] = numbers[d, node + low * strides[p] + high * strides[q]]
+            n += 1
+    return n
+
+
+@njit(cache=True, nogil=True)
+def _case(inside: NDArray[np.bool_], node: int, strides: tuple[int, int, int]) -> int:
+    """Which corners of a cell are inside, bit by bit."""
+    case = 0
+    for c in range(8):
+        if inside[node + (c & 1) * strides[0] + (c >> 1 & 1) * strides[1] + (c >> 2)]:
+            case |= 1 << c
+    return case
+
+
+@njit(cache=True, nogil=True)
+def place_vertices(
+    inside: NDArray[np.bool_],
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    numbers: NDArray[np.int32],
+    points: FloatArray,
+    normals: FloatArray,
+    sheets: NDArray[np.int8],
+    smooth: float,
+    ramp: tuple[float, float],
+    margin: float,
+    first: NDArray[np.int32],
+    cases: NDArray[np.uint8],
+    vertices: FloatArray,
+    vertex_normals: FloatArray,
+    creased: NDArray[np.bool_],
+    cells: NDArray[np.int64],
+) -> int:
+    """One vertex for every sheet of the surface in every cell: the place nearest to its crossings' tangent planes.
+
+    Args:
+        x, y, z: node positions.
+        numbers, points, normals: crossed edges.
+        sheets: shape (256, 12), see `twin.workpiece.cell_cases`.
+        smooth: cosine of the angle from the mean normal within which a sheet is smooth.
+        ramp: see `_nearest`.
+        margin: part of a cell's size that vertices keep from its faces, those of a second sheet twice as much and so
+            on, so that no two coincide.
+        first, cases: shape (nodes,), filled for cells with a surface: number of the first vertex, and case.
+        vertices, vertex_normals, creased: filled; creased where the surface has an edge or a corner.
+        cells: filled, the cell of each vertex times 4 plus its sheet.
+
+    Returns:
+        number of vertices.
+    """
+    strides = (len(y) * len(z), len(z), 1)
+    own = np.empty(12, dtype=np.int32)
+    near, leans = np.empty((13, 3)), np.empty((12, 3))
+    count = 0
+    for i in range(len(x) - 1):
+        for j in range(len(y) - 1):
+            for k in range(len(z) - 1):
+                node = i * strides[0] + j * strides[1] + k
+                case = _case(inside, node, strides)
+                first[node] = -1
+                if case == 0 or case == 255:
+                    continue
+                first[node] = count
+                cases[node] = case
+                for sheet in range(sheets[case].max() + 1):
+                    n = _gather(node, strides, case, sheet, sheets, numbers, own)
+                    for m in range(n):
+                        near[m] = points[own[m]]
+                        leans[m] = normals[own[m]]
+                    vertex = vertices[count]
+                    _centre(near[: n + 1], leans[:n], vertex_normals[count])
+                    cosine = _along_normal(near[:n], leans[:n], vertex_normals[count], vertex)
+                    creased[count] = cosine < smooth
+                    if creased[count]:
+                        _nearest(near[:n], leans[:n], ramp, vertex)
+                    inset = margin * (1 + sheet)
+                    vertex[0] = _clamped(vertex[0] + near[n, 0], x[i], x[i + 1], inset)
+                    vertex[1] = _clamped(vertex[1] + near[n, 1], y[j], y[j + 1], inset)
+                    vertex[2] = _clamped(vertex[2] + near[n, 2], z[k], z[k + 1], inset)
+                    cells[count] = 4 * node + sheet
+                    count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def join_quads(
+    shape: tuple[int, int, int],
+    own: tuple[int, int],
+    numbers: NDArray[np.int32],
+    axes: NDArray[np.int8],
+    sheets: NDArray[np.int8],
+    first: NDArray[np.int32],
+    cases: NDArray[np.uint8],
+    quads: NDArray[np.int32],
+) -> int:
+    """One quadrilateral round every crossed edge, counter-clockwise seen from outside.
+
+    Args:
+        own: only edges whose lower node is at least here along x and y, and not on the last nodes.
+        quads: shape (edges, 5), filled: four vertices and the edge's number.
+
+    Returns:
+        number of quadrilaterals.
+    """
+    nx, ny, nz = shape
+    strides = (ny * nz, nz, 1)
+    count = 0
+    for i in range(own[0], nx - 1):
+        for j in range(own[1], ny - 1):
+            for k in range(nz - 1):
+                node = (i * ny + j) * nz + k
+                for d in range(3):
+                    number = numbers[d, node]
+                    if number < 0:
+                        continue
+                    p, q = (d + 1) % 3, (d + 2) % 3
+                    for corner in range(4):
+                        back_p = 1 if corner == 0 or corner == 3 else 0
+                        back_q = 1 if corner == 0 or corner == 1 else 0
+                        cell = node - back_p * strides[p] - back_q * strides[q]
+                        edge = 4 * d + (back_p + 2 * back_q if p < q else back_q + 2 * back_p)
+                        place = corner if axes[number] > 0 else 3 - corner
+                        quads[count, place] = first[cell] + sheets[cases[cell], edge]
+                    quads[count, 4] = number
+                    count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def split_quads(
+    quads: NDArray[np.int32], vertices: FloatArray, creased: NDArray[np.bool_], triangles: NDArray[np.int32]
+) -> None:
+    """Two triangles a quadrilateral: along a crease that crosses it, else along the shorter diagonal.
+
+    Args:
+        triangles: shape (2 n, 3), filled.
+    """
+    for n in range(len(quads)):
+        a, b, c, d = quads[n, 0], quads[n, 1], quads[n, 2], quads[n, 3]
+        crease_ac, crease_bd = creased[a] and creased[c], creased[b] and creased[d]
+        ac, bd = 0.0, 0.0
+        for m in range(3):
+            ac += (vertices[a, m] - vertices[c, m]) ** 2
+            bd += (vertices[b, m] - vertices[d, m]) ** 2
+        if (crease_bd and not crease_ac) or (crease_ac == crease_bd and bd < ac):
+            a, b, c, d = b, c, d, a
+        triangles[2 * n, 0], triangles[2 * n, 1], triangles[2 * n, 2] = a, b, c
+        triangles[2 * n + 1, 0], triangles[2 * n + 1, 1], triangles[2 * n + 1, 2] = a, c, d
