@@ -1,8 +1,8 @@
 """Flow A on one page: NC program -> motion -> engagement -> forces -> removal -> records.
 
-    run = Replay(load_job("job.toml"))
-    for record in run:
-        sink.write(record)
+run = Replay(load_job("job.toml"))
+for record in run:
+    sink.write(record)
 """
 
 from __future__ import annotations
@@ -225,9 +225,7 @@ class Replay:
                 "tool change position)"
             )
 
-    def _collision(
-        self, move: Move, kind: CollisionKind, start: FloatArray, volume: float, t_s: float
-    ) -> Collision:
+    def _collision(self, move: Move, kind: CollisionKind, start: FloatArray, volume: float, t_s: float) -> Collision:
         x, y, z = start
         what = {
             "rapid": "rapid motion through the stock",
@@ -259,9 +257,7 @@ class Replay:
     def summary(self, *, complete: bool = False) -> RunSummary:
         """Sums, peaks and digest of what was replayed so far."""
         areas = tuple(self.workpiece.areas_mm2(axis) for axis in range(3))
-        return self._totals.summary(
-            complete=complete, areas_mm2=areas, removed_mm3=self._material.removed_mm3
-        )
+        return self._totals.summary(complete=complete, areas_mm2=areas, removed_mm3=self._material.removed_mm3)
 
     def close(self) -> None:
         """Let worker threads go."""

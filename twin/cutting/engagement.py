@@ -120,9 +120,7 @@ class Engager:
         summary = self._summary(share, turn, elements, feed, feed_mm_s, feed_per_tooth_mm)
         return EngagementMap(share, turn, elements, summary)
 
-    def _in_material(
-        self, points: FloatArray, workpiece: TriSlices, pending: Sequence[Sweep]
-    ) -> NDArray[np.bool_]:
+    def _in_material(self, points: FloatArray, workpiece: TriSlices, pending: Sequence[Sweep]) -> NDArray[np.bool_]:
         votes = np.zeros(len(points), dtype=np.int8)
         if len(points):
             workpiece.count_votes(points, self._enough, votes)
@@ -131,9 +129,7 @@ class Engager:
             clear_swept(points, inside, pending, self._tolerance.depth_mm)
         return np.asarray(inside)
 
-    def _shares(
-        self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: Sequence[Sweep]
-    ) -> FloatArray:
+    def _shares(self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: Sequence[Sweep]) -> FloatArray:
         """Engaged share of each element, from where along the meridian the material ends."""
         found = np.empty((len(self._cos_theta) * elements, 2), dtype=np.int64)
         found = found[: kernels.transitions(self._status, elements, found)]
@@ -152,9 +148,7 @@ class Engager:
         kernels.weights(self._status, elements, self._edges.bounds_mm, found, boundary, share)
         return share
 
-    def _turns(
-        self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: Sequence[Sweep]
-    ) -> FloatArray:
+    def _turns(self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: Sequence[Sweep]) -> FloatArray:
         """Where between two rows an element changes between engaged and free, as a part of the way."""
         found = np.empty((len(self._cos_theta) * elements, 2), dtype=np.int64)
         found = found[: kernels.turns(self._status, elements, found)]

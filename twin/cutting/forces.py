@@ -27,9 +27,7 @@ from twin.tools.edges import CuttingEdges
 class ForceModel:
     """Forces of one tool in one material."""
 
-    def __init__(
-        self, edges: CuttingEdges, coefficients: CuttingCoefficients, rows: int, tolerance: Tolerance
-    ) -> None:
+    def __init__(self, edges: CuttingEdges, coefficients: CuttingCoefficients, rows: int, tolerance: Tolerance) -> None:
         self._edges = edges
         self._coefficients = coefficients.values
         self._tolerance = tolerance

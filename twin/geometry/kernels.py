@@ -50,7 +50,9 @@ def _block_class(count: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _release(cell: int, start: NDArray[np.int64], room: NDArray[np.int64], pool: FloatArray, free: NDArray[np.int64]) -> None:
+def _release(
+    cell: int, start: NDArray[np.int64], room: NDArray[np.int64], pool: FloatArray, free: NDArray[np.int64]
+) -> None:
     if room[cell] > 0:
         exponent = _block_class(room[cell])
         pool[start[cell], 0] = float(free[exponent])
@@ -192,7 +194,14 @@ def _split_segments(
 
 @njit(cache=True, nogil=True)
 def _emit_odd(
-    toggles: FloatArray, n: int, segments: FloatArray, pieces: int, column: int, sign: float, out: FloatArray, count: int
+    toggles: FloatArray,
+    n: int,
+    segments: FloatArray,
+    pieces: int,
+    column: int,
+    sign: float,
+    out: FloatArray,
+    count: int,
 ) -> int:
     """Add the parts of lo (column 2) or hi (column 4) between an odd and the next toggle; -1 when they do not fit."""
     if n == 0:
@@ -610,9 +619,7 @@ def contains(
         k = int(math.floor((points[i, normal_axis] - low) / pitch))
         if k < 0 or k >= planes or base[k] < 0:
             continue
-        if in_plane(
-            points[i, u_axis], points[i, v_axis], base[k], grid, columns, tiles, state, start, size, pool
-        ):
+        if in_plane(points[i, u_axis], points[i, v_axis], base[k], grid, columns, tiles, state, start, size, pool):
             votes[i] += 1
 
 

@@ -46,7 +46,17 @@ def profile_radius(shape: FloatArray, height: float) -> float:
 
 @njit(cache=True, nogil=True)
 def sphere_upper(
-    a0: float, da: float, b0: float, db: float, c0: float, dc: float, radius: float, a: float, b: float, ta: float, tb: float
+    a0: float,
+    da: float,
+    b0: float,
+    db: float,
+    c0: float,
+    dc: float,
+    radius: float,
+    a: float,
+    b: float,
+    ta: float,
+    tb: float,
 ) -> float:
     """Largest c on a sphere swept along (a0, b0, c0) + t (da, db, dc), t in [ta, tb], above the point (a, b).
 
@@ -78,7 +88,9 @@ def sphere_upper(
 
 
 @njit(cache=True, nogil=True)
-def _covering_times(w0: float, dw: float, u0: float, du: float, radius: float, w: float, u: float) -> tuple[float, float]:
+def _covering_times(
+    w0: float, dw: float, u0: float, du: float, radius: float, w: float, u: float
+) -> tuple[float, float]:
     """Interval of t in [0, 1] in which a disc moving in the (w, u) plane covers a point; empty when first > last."""
     ew = w - w0
     eu = u - u0
@@ -150,7 +162,9 @@ def _lowest_by_search(
 
 
 @njit(cache=True, nogil=True)
-def highest(shape: FloatArray, w0: float, dw: float, u0: float, du: float, z0: float, dz: float, w: float, u: float) -> float:
+def highest(
+    shape: FloatArray, w0: float, dw: float, u0: float, du: float, z0: float, dz: float, w: float, u: float
+) -> float:
     """Top of the swept cutting part above the plan point (w, u); -inf where the sweep does not cover it."""
     first, last = _covering_times(w0, dw, u0, du, shape[6], w, u)
     if first > last:
@@ -240,7 +254,9 @@ def _times_at_height(base: float, dz: float, z: float, low: float, high: float) 
 
 
 @njit(cache=True, nogil=True)
-def side(shape: FloatArray, z0: float, dz: float, u0: float, du: float, v0: float, dv: float, z: float, u: float) -> float:
+def side(
+    shape: FloatArray, z0: float, dz: float, u0: float, du: float, v0: float, dv: float, z: float, u: float
+) -> float:
     """Largest v of the swept tool's section at height z on the line u; -inf where there is none."""
     base = z0 - shape[7]
     ta, tb = _times_at_height(base, dz, z, 0.0, shape[5])
@@ -275,7 +291,8 @@ def _reach(shape: FloatArray, z0: float, dz: float, u0: float, du: float, z: flo
     a = ta
     b = tb
     best = max(
-        u0 + du * ta + profile_radius(shape, z - base - dz * ta), u0 + du * tb + profile_radius(shape, z - base - dz * tb)
+        u0 + du * ta + profile_radius(shape, z - base - dz * ta),
+        u0 + du * tb + profile_radius(shape, z - base - dz * tb),
     )
     if dz == 0.0:
         return best
@@ -394,9 +411,7 @@ def section_nodes(
                 lm, hm = _strip_at(shape, horizontal, start, move, w, um)
                 flat = depth >= _MAX_DEPTH or not (la <= ha and lb <= hb and lm <= hm)
                 if not flat:
-                    flat = (
-                        _off_chord(um, lm, ua, la, ub, lb) <= chord and _off_chord(um, hm, ua, ha, ub, hb) <= chord
-                    )
+                    flat = _off_chord(um, lm, ua, la, ub, lb) <= chord and _off_chord(um, hm, ua, ha, ub, hb) <= chord
                 if flat:
                     if lb <= hb:
                         if written + 1 > len(nodes):
@@ -424,7 +439,12 @@ def section_nodes(
 
 @njit(cache=True, nogil=True)
 def outside_sweeps(
-    points: FloatArray, candidates: NDArray[np.bool_], shapes: FloatArray, starts: FloatArray, moves: FloatArray, depth: float
+    points: FloatArray,
+    candidates: NDArray[np.bool_],
+    shapes: FloatArray,
+    starts: FloatArray,
+    moves: FloatArray,
+    depth: float,
 ) -> None:
     """Clear the candidates that lie deeper than ``depth`` inside one of several swept tools.
 

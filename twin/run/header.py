@@ -17,9 +17,7 @@ from twin.workpiece.trislice import TriSlices
 _LIBRARIES = ("numpy", "numba", "pyclipper", "trimesh")
 
 
-def run_header(
-    job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], planned_time_s: float
-) -> RunHeader:
+def run_header(job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], planned_time_s: float) -> RunHeader:
     """Describe a run: stock, tools, settings with their defaults, versions, and the files it was made from."""
     parameters = dict(_flat(job.model_dump(mode="json", exclude={"text", "path"})))
     parameters |= {f"version.{name}": version(name) for name in _LIBRARIES}

@@ -37,9 +37,7 @@ class Preview:
         for patch in self._grid.patches:
             yield patch_mesh(self._workpiece, self._grid, patch, t_s)
 
-    def changed_patches(
-        self, t_s: float, changed: Iterable[tuple[FloatArray, FloatArray]]
-    ) -> Iterator[WorkpiecePatch]:
+    def changed_patches(self, t_s: float, changed: Iterable[tuple[FloatArray, FloatArray]]) -> Iterator[WorkpiecePatch]:
         """The patches that boxes touch, given by their lower and upper corners."""
         touched = {patch for low, high in changed for patch in self._grid.touching(low, high)}
         for patch in sorted(touched):

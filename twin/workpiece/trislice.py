@@ -100,9 +100,7 @@ class TriSlices(ABC):
         return votes > 0
 
     @abstractmethod
-    def _vote(
-        self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]
-    ) -> None:
+    def _vote(self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]) -> None:
         """Add a family's votes for points whose votes so far lie in [least, most]."""
 
 
@@ -153,9 +151,7 @@ class CellSlices(TriSlices):
         for asked, axis in enumerate((0, 1, 2)):
             self._vote(points_mm, axis, enough - (3 - asked), enough - 1, votes)
 
-    def _vote(
-        self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]
-    ) -> None:
+    def _vote(self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]) -> None:
         family = self._families[axis]
         kernels.contains(
             points_mm,
@@ -232,9 +228,7 @@ class PolygonSlices(TriSlices):
         for axis in range(3):
             self._vote(points_mm, axis, 0, enough - 1, votes)
 
-    def _vote(
-        self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]
-    ) -> None:
+    def _vote(self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]) -> None:
         planes = np.floor((points_mm[:, axis] - self.low_mm[axis]) / self.pitch_mm[axis]).astype(int)
         for i, (point, k) in enumerate(zip(points_mm, planes, strict=True)):
             if least <= votes[i] <= most and 0 <= k < self.count(axis):

@@ -130,7 +130,9 @@ def test_an_empty_plane_stays_empty() -> None:
 @settings(max_examples=40, deadline=None)
 @given(
     st.lists(
-        st.tuples(st.integers(-2, 12), st.integers(-2, 12), st.integers(1, 5), st.integers(1, 5)), min_size=1, max_size=12
+        st.tuples(st.integers(-2, 12), st.integers(-2, 12), st.integers(1, 5), st.integers(1, 5)),
+        min_size=1,
+        max_size=12,
     )
 )
 def test_cuts_along_cell_borders(boxes: list[tuple[int, int, int, int]]) -> None:

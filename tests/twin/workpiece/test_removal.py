@@ -67,7 +67,9 @@ def test_stores_agree_on_points_rings_and_crossings() -> None:
         for k in range(0, stores[0].count(axis), 3):
             assert stores[0].region(axis, k).area_mm2 == pytest.approx(stores[1].region(axis, k).area_mm2, abs=1e-4)
             fast, slow = (store.crossings(axis, k, lines) for store in stores)
-            lengths = [[np.sum(v[a + 1 : b : 2] - v[a:b:2]) for a, b in zip(o, o[1:], strict=False)] for o, v in (fast, slow)]
+            lengths = [
+                [np.sum(v[a + 1 : b : 2] - v[a:b:2]) for a, b in zip(o, o[1:], strict=False)] for o, v in (fast, slow)
+            ]
             assert lengths[0] == pytest.approx(lengths[1], abs=1e-4)
     for enough in (1, 2):
         votes = [np.zeros(len(points), dtype=np.int8) for _ in stores]
@@ -84,9 +86,7 @@ def test_a_ball_slot_has_the_volume_of_the_closed_form(axis: int, limit: float) 
     piece = CellSlices(box_slices((0.0, -6.0, -4.0), (20.0, 6.0, 0.0), 0.1))
     before = piece.volume_mm3(axis)
     with Removal(piece, tolerance.chord_mm) as removal:
-        reported = removal.cut(
-            sweep_of(tool_shape("ball", 8.0, 20.0), (-6.0, 0.0, -2.0), (26.0, 0.0, -2.0), tolerance)
-        )
+        reported = removal.cut(sweep_of(tool_shape("ball", 8.0, 20.0), (-6.0, 0.0, -2.0), (26.0, 0.0, -2.0), tolerance))
     segment = 16.0 * math.acos(0.5) - 2.0 * math.sqrt(12.0)
     assert before - piece.volume_mm3(axis) == pytest.approx(20.0 * segment, rel=limit)
     assert reported == pytest.approx(20.0 * segment, rel=1.5e-3)
@@ -101,7 +101,8 @@ def test_many_short_sweeps_remove_what_one_long_one_does() -> None:
         whole = removal.cut(sweep_of(ball, (-6.0, 0.5, -2.0), (14.0, 0.5, -2.0), tolerance))
     with Removal(short, tolerance.chord_mm, threads=1) as removal:
         parts = sum(
-            removal.cut(sweep_of(ball, (a, 0.5, -2.0), (b, 0.5, -2.0), tolerance)) for a, b in zip(at, at[1:], strict=False)
+            removal.cut(sweep_of(ball, (a, 0.5, -2.0), (b, 0.5, -2.0), tolerance))
+            for a, b in zip(at, at[1:], strict=False)
         )
     assert parts == pytest.approx(whole, rel=1e-3)
     for axis in range(3):
