@@ -1,4 +1,4 @@
-"""Keeps a run in memory and takes its forces as numpy arrays: mean over a steady part, and the tooth-passing harmonics."""
+"""Keeps a run in memory and takes its forces as numpy arrays: mean of a steady part, tooth-passing harmonics."""
 
 from __future__ import annotations
 

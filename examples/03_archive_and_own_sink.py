@@ -53,9 +53,7 @@ def main() -> None:
                 archive.write(record)
                 peaks.write(record)
         table = read_forces(path)
-        print(
-            f"{path.name}: {path.stat().st_size / 1e6:.1f} MB, {table.num_rows} samples, complete: {run_info(path).complete}"
-        )
+        print(f"{path.name}: {table.num_rows} samples, complete: {run_info(path).complete}")
     for line, force in sorted(peaks.peak_n.items(), key=lambda item: -item[1])[:5]:
         print(f"  line {line:3d} {peaks.text[line]:30s} {force:7.1f} N")
 

@@ -1,4 +1,4 @@
-"""What is left of the stock: volumes by the three families of slices, one slice's rings, and the surface as an STL file."""
+"""What is left of the stock: volumes by the three families of slices, a slice's rings, the surface as an STL file."""
 
 from __future__ import annotations
 

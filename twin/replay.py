@@ -34,6 +34,7 @@ from twin.run.preview import Preview
 from twin.run.setup import ToolSetup, machine_settings, stock_slices, tool_setup, workpiece
 from twin.run.totals import Totals
 from twin.tolerance import Tolerance
+from twin.workpiece.to_mesh import SurfaceMesh, surface_mesh
 
 
 class Replay:
@@ -258,6 +259,11 @@ class Replay:
         """Sums, peaks and digest of what was replayed so far."""
         areas = tuple(self.workpiece.areas_mm2(axis) for axis in range(3))
         return self._totals.summary(complete=complete, areas_mm2=areas, removed_mm3=self._material.removed_mm3)
+
+    def mesh(self) -> SurfaceMesh:
+        """The surface of the workpiece as it is now."""
+        self._material.flush()
+        return surface_mesh(self.workpiece, self.job.simulation.preview_pitch_mm)
 
     def close(self) -> None:
         """Let worker threads go."""

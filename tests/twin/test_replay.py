@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -89,7 +90,7 @@ def test_steps_join_in_time_and_place(tmp_path: Path) -> None:
     program = HEAD + "G0 X5 Y5 Z5\nG1 Z-1 F300\nG3 X5 Y5 I5 Z-2\nG1 X20 Y9\nG4 X0.5\nG0 Z20\nM30\n"
     records = run(make(tmp_path, program, tools=[FLAT]))
     steps = steps_of(records)
-    for before, after in zip(steps, steps[1:], strict=False):
+    for before, after in pairwise(steps):
         assert after.t_s == pytest.approx(before.t_s + before.duration_s, abs=1e-9)
         assert after.start_mm == pytest.approx(before.end_mm, abs=1e-9)
         assert after.index == before.index + 1

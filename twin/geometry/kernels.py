@@ -1,8 +1,8 @@
 """Column cells: polygons on parallel planes cut into small cells; compiled.
 
 A plane is divided into columns along u and tiles along v, all squares of one size. A cell is EMPTY, FULL, or PARTIAL
-with its own list of edges. An edge is a row (u0, v0, u1, v1, sign), u0 < u1, sign +1 where material lies below it and -1
-where it lies above; vertical edges are implied. Where material goes on through the top of a cell a closing edge lies
+with its own list of edges. An edge is a row (u0, v0, u1, v1, sign), u0 < u1, sign +1 where material lies below it and
+-1 where it lies above; vertical edges are implied. Where material goes on through the top of a cell a closing edge lies
 there, so that a point is in material when an odd number of the cell's edges lies above it (half-open in u).
 
 Cutting a strip lo(u) <= v <= hi(u) keeps the parts of the edges that are not above lo or are above hi, and adds the
@@ -30,7 +30,7 @@ _SMALLEST_BLOCK = 8
 
 @njit(cache=True, nogil=True)
 def _line(u: float, ua: float, va: float, ub: float, vb: float) -> float:
-    """v on the straight line through two points, exact at both."""
+    """The v on the straight line through two points, exact at both."""
     if u == ua:
         return va
     if u == ub:

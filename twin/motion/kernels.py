@@ -313,7 +313,7 @@ def _reach(shape: FloatArray, z0: float, dz: float, u0: float, du: float, z: flo
 def _strip_at(
     shape: FloatArray, horizontal: bool, start: FloatArray, move: FloatArray, w: float, u: float
 ) -> tuple[float, float]:
-    """lo and hi of the section by the plane w at u; (inf, -inf) where there is none."""
+    """The lo and hi of the section by the plane w at u; (inf, -inf) where there is none."""
     if horizontal:
         hi = side(shape, start[0], move[0], start[1], move[1], start[2], move[2], w, u)
         lo = -side(shape, start[0], move[0], start[1], move[1], -start[2], -move[2], w, u)

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from twin.arrays import FloatArray
 from twin.record import WorkpiecePatch
-from twin.workpiece.to_mesh import PatchGrid, patch_grid, patch_mesh
+from twin.workpiece.lattice import PatchGrid
+from twin.workpiece.to_mesh import patch_grid, patch_mesh
 from twin.workpiece.trislice import TriSlices
 
 #: Key frames of the workpiece in a run.

@@ -161,7 +161,7 @@ def machine_settings(job: Job, slices: SliceSet) -> MachineSettings:
     top = float(origin[2] + slices.high_mm[2]) + max(lengths.values(), default=0.0) + HOME_CLEARANCE_MM
     home = machine.home_mm or (float(middle[0]), float(middle[1]), top)
     return MachineSettings(
-        offsets=dict(machine.offsets),
+        offsets={str(name): place for name, place in machine.offsets.items()},
         home_mm=home,
         start_mm=machine.start_mm or home,
         length_offsets_mm=lengths,

@@ -80,8 +80,13 @@ class TriSlices(ABC):
             votes: shape (n,), starts at 0; at least ``enough`` on return where the point is in material.
         """
 
+    @abstractmethod
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
         """Make the planes inside a box ready to be asked for points."""
+
+    @abstractmethod
+    def crossings(self, axis: int, k: int, u_mm: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+        """See `twin.workpiece.store.SliceStore.crossings`."""
 
     def area_mm2(self, axis: int, k: int) -> float:
         """Area of material on one plane."""
@@ -162,7 +167,11 @@ class CellSlices(TriSlices):
             family.grid,
             family.columns,
             family.tiles,
-            *(family.base, family.state, family.start, family.size, family.pool),
+            family.base,
+            family.state,
+            family.start,
+            family.size,
+            family.pool,
             votes,
             least,
             most,
@@ -217,11 +226,19 @@ class PolygonSlices(TriSlices):
         return offsets.astype(np.int64), np.concatenate(hits) if hits else np.zeros(0)
 
     def line_ends(
-        self, axis: int, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
+        self,
+        axis: int,
+        planes: NDArray[np.int64],
+        fixed: int,
+        at_mm: FloatArray,
+        window_mm: tuple[float, float],  # noqa: ARG002
     ) -> LineEnds:
         """See `SliceStore.line_ends`; the whole of every line, whatever the window."""
         rings = ([np.array(p) / clip.UNITS_PER_MM for p in self._paths[axis][k]] for k in planes)
         return ring_line_ends(rings, fixed, at_mm)
+
+    def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
+        """Nothing to do: all planes are there from the start."""
 
     def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
         """See `TriSlices.count_votes`."""

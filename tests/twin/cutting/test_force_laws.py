@@ -86,7 +86,7 @@ def test_no_force_in_air() -> None:
 @pytest.mark.parametrize("angle_deg", [0.0, 17.0, 45.0])
 @pytest.mark.parametrize("kind", ["flat", "ball"])
 def test_an_exact_retrace_cuts_next_to_nothing(kind: str, angle_deg: float) -> None:
-    """The wall just made is known to half a slice's pitch: only a narrow band along it, where n.f is small, may show."""
+    """The wall just made is known to half a pitch: only a narrow band along it, where n.f is small, may show."""
     shape = tool_shape(kind, 8.0, 10.0)  # type: ignore[arg-type]
     angle = math.radians(angle_deg)
     forward = np.array([math.cos(angle), math.sin(angle), 0.0])

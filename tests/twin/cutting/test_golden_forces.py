@@ -10,8 +10,8 @@ from twin.cutting.engagement import EngagementRule
 
 #: Steps are at 0.1 mm; these places lie at every part of a slice's pitch.
 FORWARD_MM = (0.0, 0.137, 0.274, 0.411)
-#: Where a straight edge stands exactly on the border of the cut its force is undefined: the reference has the edge force
-#: of one of the two teeth there by rounding, this program of neither (h = 0 is no chip).
+#: Where a straight edge stands exactly on the border of the cut its force is undefined: the reference has the edge
+#: force of one of the two teeth there by rounding, this program of neither (h = 0 is no chip).
 ON_THE_BORDER = {"flat10_zero_helix_slot": (0, 90, 180, 270)}
 
 

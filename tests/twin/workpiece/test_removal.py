@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -67,9 +68,7 @@ def test_stores_agree_on_points_rings_and_crossings() -> None:
         for k in range(0, stores[0].count(axis), 3):
             assert stores[0].region(axis, k).area_mm2 == pytest.approx(stores[1].region(axis, k).area_mm2, abs=1e-4)
             fast, slow = (store.crossings(axis, k, lines) for store in stores)
-            lengths = [
-                [np.sum(v[a + 1 : b : 2] - v[a:b:2]) for a, b in zip(o, o[1:], strict=False)] for o, v in (fast, slow)
-            ]
+            lengths = [[np.sum(v[a + 1 : b : 2] - v[a:b:2]) for a, b in pairwise(o)] for o, v in (fast, slow)]
             assert lengths[0] == pytest.approx(lengths[1], abs=1e-4)
     for enough in (1, 2):
         votes = [np.zeros(len(points), dtype=np.int8) for _ in stores]
@@ -100,10 +99,7 @@ def test_many_short_sweeps_remove_what_one_long_one_does() -> None:
     with Removal(long, tolerance.chord_mm) as removal:
         whole = removal.cut(sweep_of(ball, (-6.0, 0.5, -2.0), (14.0, 0.5, -2.0), tolerance))
     with Removal(short, tolerance.chord_mm, threads=1) as removal:
-        parts = sum(
-            removal.cut(sweep_of(ball, (a, 0.5, -2.0), (b, 0.5, -2.0), tolerance))
-            for a, b in zip(at, at[1:], strict=False)
-        )
+        parts = sum(removal.cut(sweep_of(ball, (a, 0.5, -2.0), (b, 0.5, -2.0), tolerance)) for a, b in pairwise(at))
     assert parts == pytest.approx(whole, rel=1e-3)
     for axis in range(3):
         # every step's polygon stands off the tool by up to the chord tolerance, along the whole length of the wall
@@ -119,7 +115,7 @@ def test_threads_do_not_change_a_bit() -> None:
         piece = CellSlices(box_slices((0.0, 0.0, -4.0), (9.0, 8.0, 0.0), 0.5))
         with Removal(piece, tolerance.chord_mm, threads=threads) as removal:
             for i, start in enumerate(starts):
-                removal.cut(sweep_of(TOOLS[i % 4], start, start + [0.7, 0.3, 0.0], tolerance))
+                removal.cut(sweep_of(TOOLS[i % 4], start, start + np.array([0.7, 0.3, 0.0]), tolerance))
         areas.append([piece.areas_mm2(axis).tobytes() for axis in range(3)])
     assert areas[0] == areas[1]
 
