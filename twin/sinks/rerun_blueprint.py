@@ -132,7 +132,7 @@ def _curves(name: str, series: tuple[layout.Series, ...], *, close: bool = False
         origin="/",
         contents=[*(s.entity for s in series), layout.ARCHIVE_FORCE],
         name=name,
-        plot_legend=rrb.PlotLegend(visible=not close, corner=rrb.Corner2D.RightTop),
+        plot_legend=rrb.PlotLegend(visible=not close, corner=rrb.Corner2D.LeftTop),
         time_ranges=around if close else None,
         axis_x=None if close else rrb.TimeAxis(view_range=_WHOLE_RUN),
         overrides={layout.ARCHIVE_FORCE: [_archive_curve(s) for s in series]},
