@@ -83,6 +83,13 @@ class RecordingFile:
         if self._error is None:
             self._file.commit()
 
+    def discard(self) -> None:
+        """End a disconnected recording without leaving a file; what a failed write has kept stays."""
+        if self._connected:
+            self._way.finish()
+        if self._error is None:
+            self._file.discard()
+
     def _put(self, data: bytes) -> None:
         """Write, and after an error only swallow."""
         if self._error is None:

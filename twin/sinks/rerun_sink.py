@@ -97,6 +97,16 @@ class RerunSink:
         if self._file is not None:
             self._file.close()
 
+    def discard(self) -> None:
+        """End without leaving a file; a viewer keeps what it has been shown."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._recording is not None:
+            self._recording.disconnect()
+        if self._file is not None:
+            self._file.discard()
+
     def _start(self, header: RunHeader) -> None:
         if self._recording is not None:
             raise ArchiveError("a run has one RunHeader, got a second one")

@@ -224,6 +224,17 @@ def test_the_final_name_comes_with_the_end(tmp_path: Path) -> None:
     assert [p.name for p in (tmp_path / "sub").iterdir()] == ["a.rrd"]
 
 
+@pytest.mark.parametrize("begun", [False, True])
+def test_a_discarded_run_leaves_no_file(tmp_path: Path, begun: bool) -> None:
+    sink = RerunSink(rrd=tmp_path / "a.rrd")
+    if begun:
+        sink.write(RUN.header())
+    sink.discard()
+    sink.discard()
+    sink.close()
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_an_existing_file_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.rrd"
     path.write_bytes(b"mine")
