@@ -244,7 +244,7 @@ def test_what_is_no_toml_is_refused_with_its_place(text: str, message: str, tmp_
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(JobError) as caught:
         load_job(tmp_path / "no.toml")
-    expected = f"{tmp_path / 'no.toml'}: cannot be read: No such file or directory; expected a job file (TOML)"
+    expected = f"{tmp_path / 'no.toml'}: cannot be read: no such file or directory; expected a job file (TOML)"
     assert str(caught.value) == expected
 
 

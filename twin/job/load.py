@@ -32,7 +32,8 @@ def load_job(path: str | PathLike[str]) -> Job:
     try:
         text = path.read_bytes().decode("utf-8-sig")
     except OSError as error:
-        raise JobError(str(path), [f"cannot be read: {error.strerror}; expected a job file (TOML)"]) from error
+        why = (error.strerror or str(error)).lower()
+        raise JobError(str(path), [f"cannot be read: {why}; expected a job file (TOML)"]) from error
     except UnicodeDecodeError as error:
         raise JobError(str(path), [f"byte {error.start} is not UTF-8; expected a job file (TOML)"]) from error
     try:

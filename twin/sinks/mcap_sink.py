@@ -58,6 +58,11 @@ class McapSink:
             else:
                 self._file.discard()
 
+    def discard(self) -> None:
+        """End without leaving a file; what a failed write has kept under the partial name stays."""
+        if not self._file.closed:
+            self._file.discard()
+
     def __enter__(self) -> Self:
         return self
 

@@ -1,0 +1,44 @@
+"""The commands put together."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from twin.cli.export import export
+from twin.cli.info import info
+from twin.cli.mesh import mesh
+from twin.cli.replay import replay
+from twin.cli.schema import schema
+from twin.cli.view import view
+
+app = typer.Typer(
+    name="twin",
+    help="A machining digital twin: replays NC programs, removes material, predicts cutting forces.",
+    epilog="Exit codes: 0 done, 1 a mistake that the message names, 2 wrong arguments, 3 a collision under --strict, "
+    "130 Ctrl-C.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+for command in (replay, view, info, export, mesh, schema):
+    app.command()(command)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from twin import __version__
+
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and end.")
+    ] = False,
+) -> None: ...

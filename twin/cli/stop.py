@@ -1,0 +1,38 @@
+"""Ctrl-C as a wish: the run ends at its next record, with everything in order."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from types import FrameType
+from typing import Any, Self
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class StopWish:
+    """Notes Ctrl-C (or a request to terminate) inside its block; a second one interrupts at once.
+
+    Outside the main thread nothing is noted.
+
+    Attributes:
+        signal_number: what came, None so far.
+    """
+
+    def __init__(self) -> None:
+        self.signal_number: int | None = None
+        self._usual: dict[signal.Signals, Any] = {}
+
+    def __enter__(self) -> Self:
+        if threading.current_thread() is threading.main_thread():
+            self._usual = {number: signal.signal(number, self._note) for number in _SIGNALS}
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, usual in self._usual.items():
+            signal.signal(number, usual)
+
+    def _note(self, number: int, _frame: FrameType | None) -> None:
+        if self.signal_number is not None:
+            raise KeyboardInterrupt
+        self.signal_number = number

@@ -1,0 +1,55 @@
+"""Numbers as people read them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+def clock(seconds: float) -> str:
+    """A time as ``1:02.3`` (minutes), or ``2:01:02`` from an hour on."""
+    tenths = round(seconds * 10.0)
+    if tenths < 36000:
+        return f"{tenths // 600}:{tenths % 600 // 10:02d}.{tenths % 10}"
+    whole = round(seconds)
+    return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"
+
+
+def grouped(value: float, decimals: int = 0) -> str:
+    """A number with its thousands set apart: ``12 345``."""
+    return f"{value:,.{decimals}f}".replace(",", " ")
+
+
+def digits(value: float) -> str:
+    """About three digits that count, never an exponent: ``0.144``, ``66.5``, ``1 470``."""
+    size = abs(value)
+    for limit, decimals in ((0.9995, 3), (9.995, 2), (999.95, 1)):
+        if size < limit:
+            return f"{value:.{decimals}f}"
+    return grouped(value)
+
+
+def column(values: Iterable[float]) -> list[str]:
+    """Numbers that stand below each other, with as many decimals as the largest of them needs."""
+    numbers = list(values)
+    largest = max(map(abs, numbers), default=0.0)
+    decimals = next((d for limit, d in ((1.0, 3), (10.0, 2), (1000.0, 1)) if largest < limit), 0)
+    return [grouped(number, decimals) for number in numbers]
+
+
+def volume(mm3: float) -> str:
+    """A volume in mm³, or in cm³ when it is large."""
+    return f"{digits(mm3)} mm³" if abs(mm3) < 10000.0 else f"{digits(mm3 * 1e-3)} cm³"
+
+
+def size(count: float) -> str:
+    """A number of bytes."""
+    for unit in ("B", "kB", "MB"):
+        if count < 999.5:
+            return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"
+        count /= 1000.0
+    return f"{count:.1f} GB"
+
+
+def plural(count: int, word: str) -> str:
+    """``1 collision``, ``2 collisions``."""
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
