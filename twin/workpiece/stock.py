@@ -109,7 +109,7 @@ def cylinder_slices(
 ) -> SliceSet:
     """A cylinder along x, y or z as slices.
 
-    Sections across the axis are polygons of the circle's area, at most two thirds of ``chord_mm`` inside and one third
+    Sections across the axis are polygons of the circle's area, at most one third of ``chord_mm`` inside and two thirds
     outside of it; they never leave the cylinder's box. Sections along the axis are the exact rectangles of the circular
     cylinder on each plane, so their midpoint volume is off by terms of order (pitch / radius)^1.5.
 

@@ -1,0 +1,159 @@
+"""STL files in: what is a solid, and the message where something is not."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from twin.arrays import FloatArray
+from twin.errors import MeshError
+from twin.workpiece.from_mesh import load_mesh, solid
+from twin.workpiece.solid_check import winding_number
+
+
+def cube(low: float = 0.0, high: float = 10.0) -> FloatArray:
+    """Corners of a cube's 12 triangles, turned outwards."""
+    mesh = trimesh.creation.box(bounds=[[low] * 3, [high] * 3])
+    return np.array(mesh.triangles)
+
+
+def refusal(corners: FloatArray) -> str:
+    with pytest.raises(MeshError) as caught:
+        solid(corners, "part.stl")
+    return str(caught.value)
+
+
+def stl(path: Path, corners: FloatArray, *, ascii_text: bool = False) -> Path:
+    mesh = trimesh.Trimesh(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3), process=False)
+    export = trimesh.exchange.stl
+    path.write_bytes(export.export_stl_ascii(mesh).encode() if ascii_text else export.export_stl(mesh))
+    return path
+
+
+@pytest.mark.parametrize("ascii_text", [False, True])
+def test_binary_and_ascii_files_are_read_scaled_and_moved(tmp_path: Path, ascii_text: bool) -> None:
+    mesh = load_mesh(stl(tmp_path / "cube.stl", cube(), ascii_text=ascii_text), scale=25.4, offset_mm=(1, 2, 3))
+    assert mesh.vertices_mm.min(axis=0) == pytest.approx([1.0, 2.0, 3.0])
+    assert mesh.vertices_mm.max(axis=0) == pytest.approx([255.0, 256.0, 257.0])
+    assert mesh.volume_mm3 == pytest.approx(254.0**3)
+
+
+def test_a_hole_is_reported_with_its_size_and_place() -> None:
+    keep = np.array([not np.all(t[:, 2] == 10.0) for t in cube()])
+    message = refusal(cube()[keep])
+    assert message == (
+        "part.stl: the surface leaks: 4 open edges around 1 hole, the largest 14.142 mm wide: "
+        "(0, 0, 10) to (0, 10, 10), (0, 0, 10) to (10, 0, 10), (0, 10, 10) to (10, 10, 10), ...; "
+        "expected a closed surface"
+    )
+
+
+def test_a_slit_is_reported_with_its_length() -> None:
+    corners = cube()
+    corners[0, 0] += 0.01
+    assert re.match(
+        r"part\.stl: the surface leaks: 4 open edges around 1 hole, the largest 1\d\.\d+ mm", refusal(corners)
+    )
+
+
+def test_a_turned_triangle_is_reported_with_its_edges() -> None:
+    corners = cube()
+    corners[3] = corners[3, ::-1]
+    assert refusal(corners).startswith("part.stl: triangles are turned unlike their neighbours along 3 edges: (")
+
+
+def test_a_mesh_turned_inside_out_is_refused_and_not_turned() -> None:
+    assert refusal(cube()[:, ::-1]) == (
+        "part.stl: the surface is inside out: volume -1000 mm3 at (0, 0, 0); "
+        "expected triangles counter-clockwise seen from outside"
+    )
+
+
+def test_one_body_of_two_turned_inside_out_is_found() -> None:
+    message = refusal(np.concatenate((cube(), cube(20.0, 22.0)[:, ::-1])))
+    assert message.startswith("part.stl: the surface is inside out (body 2 of 2): volume -8 mm3 at (20, 20, 20)")
+
+
+def test_a_cavity_is_a_body_turned_inwards_inside_another() -> None:
+    mesh = solid(np.concatenate((cube(), cube(4.0, 6.0)[:, ::-1])), "part.stl")
+    assert mesh.volume_mm3 == pytest.approx(992.0)
+
+
+def test_corners_that_differ_by_rounding_meet() -> None:
+    corners = cube()
+    corners[0] += 2e-6
+    assert len(solid(corners, "part.stl").vertices_mm) == 8
+
+
+def test_triangles_without_extent_are_dropped() -> None:
+    corners = np.concatenate((cube(), np.full((1, 3, 3), 10.0), [[[0, 0, 0], [10, 10, 10], [0, 0, 0]]]))
+    assert len(solid(corners, "part.stl").triangles) == 12
+
+
+@pytest.mark.parametrize(
+    ("corners", "message"),
+    [
+        (np.empty((0, 3, 3)), "part.stl: holds no triangles; expected a closed surface"),
+        (
+            np.full((2, 3, 3), 1.0),
+            "part.stl: every one of its 2 triangles has no area; expected a closed surface",
+        ),
+        (
+            np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0], [1, 0, 0]]]),
+            "part.stl: the surface encloses no volume; expected a solid",
+        ),
+    ],
+)
+def test_what_encloses_nothing_is_refused(corners: FloatArray, message: str) -> None:
+    assert refusal(corners) == message
+
+
+def test_a_corner_that_is_no_number_is_named() -> None:
+    corners = cube()
+    corners[4, 1, 2] = np.nan
+    assert refusal(corners) == "part.stl: triangle 5 of 12 has a corner that is no finite number"
+
+
+def test_files_that_are_no_stl_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "part.stl"
+    with pytest.raises(MeshError, match=r"part\.stl: cannot be read: No such file or directory; expected an STL file$"):
+        load_mesh(path)
+    path.write_bytes(b"")
+    with pytest.raises(MeshError, match=r"part\.stl: is empty; expected an STL file$"):
+        load_mesh(path)
+    path.write_bytes(b"hello")
+    with pytest.raises(MeshError, match=r"part\.stl: is no STL file: 5 bytes; expected at least 84$"):
+        load_mesh(path)
+    path.write_bytes(b"solid nothing\nendsolid nothing\n")
+    with pytest.raises(MeshError, match=r"holds no triangles; expected binary or ASCII STL with a closed surface$"):
+        load_mesh(path)
+
+
+def test_a_binary_file_that_was_cut_off_is_refused(tmp_path: Path) -> None:
+    path = stl(tmp_path / "part.stl", cube())
+    path.write_bytes(path.read_bytes()[:-70])
+    message = r"is no STL file: 614 bytes; expected 684 for 12 triangles, as its header says$"
+    with pytest.raises(MeshError, match=message):
+        load_mesh(path)
+
+
+def test_an_ascii_file_that_was_cut_off_is_refused(tmp_path: Path) -> None:
+    path = stl(tmp_path / "part.stl", cube(), ascii_text=True)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    with pytest.raises(MeshError, match=r"part\.stl: "):
+        load_mesh(path)
+
+
+def test_a_scale_that_is_no_length_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(MeshError, match=r"part\.stl: scale 0; expected a number above 0$"):
+        load_mesh(stl(tmp_path / "part.stl", cube()), scale=0.0)
+
+
+def test_the_winding_number_counts_bodies_round_a_point() -> None:
+    mesh = solid(np.concatenate((cube(), cube(4.0, 6.0))), "nested")
+    for point, wanted in (((5, 5, 5), 2.0), ((1, 2, 3), 1.0), ((11, 5, 5), 0.0)):
+        assert winding_number(np.array(point, float), mesh.vertices_mm, mesh.triangles) == pytest.approx(wanted)
