@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -143,13 +144,17 @@ def _stl_corners(name: str, data: bytes) -> FloatArray:
     """
     if not data:
         raise MeshError(f"{name}: is empty; expected an STL file")
-    if data.lstrip()[:5].lower() != b"solid" or b"\0" in data:
+    binary = data.lstrip()[:5].lower() != b"solid" or b"\0" in data
+    if binary:
         _check_binary_length(name, data)
     try:
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="stl", process=False)
         corners: FloatArray = np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)]
     except Exception as error:  # trimesh and its helpers raise many kinds
-        raise MeshError(f"{name}: is no STL file ({error}); expected binary or ASCII STL") from error
+        raise MeshError(f"{name}: cannot be read as STL; expected a whole binary or ASCII STL file") from error
+    begun = len(corners) if binary else len(re.findall(rb"(?i)\bfacet\s+normal\b", data))
+    if begun != len(corners):
+        raise MeshError(f"{name}: is no whole STL file: {begun} facets begin, {len(corners)} can be read")
     if len(corners) == 0:
         raise MeshError(f"{name}: holds no triangles; expected binary or ASCII STL with a closed surface")
     return corners

@@ -141,11 +141,27 @@ def test_a_binary_file_that_was_cut_off_is_refused(tmp_path: Path) -> None:
         load_mesh(path)
 
 
-def test_an_ascii_file_that_was_cut_off_is_refused(tmp_path: Path) -> None:
-    path = stl(tmp_path / "part.stl", cube(), ascii_text=True)
-    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-    with pytest.raises(MeshError, match=r"part\.stl: "):
+@pytest.mark.parametrize("text", [b"solid \xff\xfe\xe9\n", b"solid a\nfacet but no number"])
+def test_text_that_is_no_stl_or_was_cut_off_is_refused(tmp_path: Path, text: bytes) -> None:
+    path = tmp_path / "part.stl"
+    path.write_bytes(text)
+    with pytest.raises(MeshError) as caught:
         load_mesh(path)
+    assert str(caught.value) in {
+        f"{path}: cannot be read as STL; expected a whole binary or ASCII STL file",
+        f"{path}: holds no triangles; expected binary or ASCII STL with a closed surface",
+    }
+
+
+def test_an_ascii_file_that_was_cut_off_is_refused_with_what_can_be_read(tmp_path: Path) -> None:
+    """Also where the part before the cut is a solid of its own."""
+    path = stl(tmp_path / "part.stl", cube(), ascii_text=True)
+    whole = path.read_bytes()
+    path.write_bytes(whole + b"\n" + whole[: len(whole) // 2])
+    with pytest.raises(MeshError, match=r"part\.stl: is no whole STL file: \d+ facets begin, \d+ can be read$"):
+        load_mesh(path)
+    path.write_bytes(whole + b"\n" + whole.replace(b"vertex", b"vertex  "))
+    assert len(load_mesh(path).triangles) == 24
 
 
 def test_a_scale_that_is_no_length_is_refused(tmp_path: Path) -> None:
