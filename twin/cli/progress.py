@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
 from types import TracebackType
 from typing import Protocol, Self
 
@@ -51,9 +52,13 @@ class NoProgress:
 
 
 class LineProgress:
-    """One line with bar, percent, machine time, real-time factor, time left and NC line; gone at the end."""
+    """One line with bar, percent, machine time, real-time factor, time left and NC line; gone at the end.
 
-    def __init__(self) -> None:
+    Args:
+        now: seconds of a clock that only goes forward.
+    """
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
         from rich import progress as rich
 
         self._bar = rich.Progress(
@@ -67,17 +72,18 @@ class LineProgress:
             transient=True,
         )
         self._task = self._bar.add_task("preparing", total=None, state="", left="")
+        self._now = now
         self._total_s = self._begin = self._drawn = 0.0
 
     def start(self, total_s: float) -> None:
         """See `Progress.start`."""
         self._total_s = max(total_s, 1e-9)
-        self._begin = time.monotonic()
-        self._bar.reset(self._task, description="replaying", total=self._total_s, left="left")
+        self._begin = self._now()
+        self._bar.reset(self._task, description="replaying", total=self._total_s, state="", left="left")
 
     def at(self, t_s: float, nc_line: int) -> None:
         """See `Progress.at`."""
-        now = time.monotonic()
+        now = self._now()
         if now - self._drawn < _EVERY_S:
             return
         self._drawn = now

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from twin.record import RunHeader, RunSummary, ToolSummary
 
 _MOST_GROUPS = 10
+_LONGEST_BLOCK = 76
 _KINDS = {
     "rapid": "rapid through the stock",
     "shank": "shank touches the stock",
@@ -78,11 +79,11 @@ def table(*heads: str, numbers: str = "") -> Table:
 
     Args:
         heads: of its columns.
-        numbers: one letter a column, ``>`` for those that stand to the right.
+        numbers: one letter a column, ``>`` for numbers: they stand to the right and are never broken.
     """
-    made = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
+    made = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
     for head, side in zip(heads, numbers.ljust(len(heads)), strict=True):
-        made.add_column(head, justify="right" if side == ">" else "left", no_wrap=True, overflow="ellipsis")
+        made.add_column(head, justify="right" if side == ">" else "left", no_wrap=side == ">" or not head)
     return made
 
 
@@ -160,7 +161,7 @@ def _top_lines(summary: RunSummary) -> Table:
     made = table("line", "peak, N", "block", numbers=">>")
     forces = column(force for _, _, force in summary.top_lines)
     for (line, text, _), force in zip(summary.top_lines, forces, strict=True):
-        made.add_row(str(line), force, Text(text))
+        made.add_row(str(line), force, Text(text if len(text) <= _LONGEST_BLOCK else f"{text[: _LONGEST_BLOCK - 1]}…"))
     return made
 
 
