@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,8 +16,10 @@ from support.job_files import NOTHING, job_folder
 from gcode.errors import GcodeError, Place
 from twin.archive import read_run, run_info
 from twin.cli import run
-from twin.errors import ReplayError
-from twin.record import Collision, Record, RunSummary
+from twin.cli.stop import StopWish
+from twin.errors import ArchiveError, ReplayError
+from twin.record import Collision, Record, RunSummary, Step
+from twin.sinks.rerun_sink import RerunSink
 
 Use = Callable[..., FakeReplay]
 
@@ -42,8 +45,12 @@ def records(path: Path) -> list[Record]:
     return list(read_run(path))
 
 
-def ctrl_c_at(*steps: int) -> Callable[[int], None]:
-    return lambda index: os.kill(os.getpid(), signal.SIGINT) if index in steps else None
+def ctrl_c_at(step: int, times: int = 1, number: signal.Signals = signal.SIGINT) -> Callable[[int], None]:
+    def press(index: int) -> None:
+        for _ in range(times if index == step else 0):
+            os.kill(os.getpid(), number)
+
+    return press
 
 
 def test_a_run_prints_its_summary_and_leaves_its_archive(
@@ -140,7 +147,7 @@ def test_strict_without_collision_is_as_without(use: Use, job: Path) -> None:
 def test_a_wish_to_stop_ends_the_run_in_order(
     number: signal.Signals, code: int, use: Use, job: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    use(at_step=lambda index: os.kill(os.getpid(), number) if index == 9 else None)
+    use(at_step=ctrl_c_at(9, number=number))
     assert run(["replay", str(job)]) == code
     captured = capsys.readouterr()
     assert "ended early, at 0:07.6 of 0:07.6" in captured.out
@@ -151,7 +158,7 @@ def test_a_wish_to_stop_ends_the_run_in_order(
 
 
 def test_a_second_ctrl_c_gives_the_outputs_up(use: Use, job: Path) -> None:
-    fake = use(at_step=lambda index: [os.kill(os.getpid(), signal.SIGINT) for _ in range(2)] if index == 9 else None)
+    fake = use(at_step=ctrl_c_at(9, times=2))
     assert run(["replay", str(job)]) == 130
     assert list((job.parent / "recordings").iterdir()) == []
     assert fake.closed
@@ -234,6 +241,33 @@ def test_a_run_that_ends_by_an_error_leaves_nothing(
     assert captured.err == f"error: {error}\n"
     assert list((job.parent / "recordings").iterdir()) == []
     assert fake.closed
+
+
+def test_an_output_that_cannot_be_written_ends_the_run_and_takes_the_other_with_it(
+    use: Use, job: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(sink: RerunSink, record: Record) -> None:
+        if isinstance(record, Step):
+            raise ArchiveError("a.rrd: cannot be written: no space left on device")
+
+    use()
+    monkeypatch.setattr(RerunSink, "write", full)
+    assert run(["replay", str(job), "--rrd", str(job.parent / "recordings" / "a.rrd")]) == 1
+    assert capsys.readouterr().err == "error: a.rrd: cannot be written: no space left on device\n"
+    assert list((job.parent / "recordings").iterdir()) == []
+
+
+def test_signals_are_left_alone_outside_the_main_thread() -> None:
+    seen: list[object] = []
+
+    def inside() -> None:
+        with StopWish() as wish:
+            seen.extend([signal.getsignal(signal.SIGINT), wish.signal_number])
+
+    thread = threading.Thread(target=inside)
+    thread.start()
+    thread.join()
+    assert seen == [signal.getsignal(signal.SIGINT), None]
 
 
 def test_an_error_keeps_the_run_that_was_there(use: Use, job: Path) -> None:
