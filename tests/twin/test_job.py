@@ -164,3 +164,18 @@ VALUES = st.recursive(
 @given(st.dictionaries(NAMES, VALUES, max_size=4))
 def test_written_toml_reads_the_same(data: dict[str, Any]) -> None:
     assert tomllib.loads(toml_text(data)) == data
+
+
+def keys_of(schema: dict[str, Any]) -> set[str]:
+    return {key for table in (schema, *schema["$defs"].values()) for key in table["properties"]}
+
+
+def test_every_key_is_in_the_documentation() -> None:
+    text = (Path(__file__).parents[2] / "docs" / "job-file.md").read_text()
+    assert {key for key in keys_of(job_schema()) if key not in text} == set()
+
+
+def test_the_job_in_the_documentation_is_sound(tmp_path: Path) -> None:
+    text = (Path(__file__).parents[2] / "docs" / "job-file.md").read_text()
+    job_folder(tmp_path).write_text(text.split("```toml\n")[1].split("```")[0])
+    assert load_job(tmp_path / "job.toml").forces
