@@ -27,10 +27,11 @@ from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Move
 from twin.record import Collision, CollisionKind, ForceSamples, Record, RunSummary, Step
 from twin.run.clock import SpindleClock
+from twin.run.contacts import Contact, Contacts, collision_record, point
 from twin.run.header import run_header
 from twin.run.material import Material
 from twin.run.nc_events import nc_event
-from twin.run.preview import Preview
+from twin.run.preview import FRAMES, Preview
 from twin.run.setup import ToolSetup, machine_settings, stock_slices, tool_setup, workpiece
 from twin.run.totals import Totals
 from twin.tolerance import Tolerance
@@ -63,7 +64,8 @@ class Replay:
         self._clock = SpindleClock(self._rows)
         self._descriptions = {n: t.description for n, t in self._tools.items()}
         self._totals = Totals(self._descriptions)
-        self._preview = Preview(self.workpiece, job.simulation.preview_pitch_mm)
+        self._frame_s = self.planned_time_s / FRAMES
+        self._preview = Preview(self.workpiece, job.simulation.preview_pitch_mm, self._frame_s)
         self._t_s = 0.0
         self._steps = 0
         self._checked_tool = 0
@@ -73,8 +75,6 @@ class Replay:
         yield from self._preview.all_patches(0.0)
         for item in self._program():
             yield from self._move(item) if isinstance(item, Move) else self._event(item)
-            if self._preview.due(self._t_s, self.planned_time_s):
-                yield from self._changed_patches()
         self._material.flush()
         yield from self._changed_patches()
         yield self.summary(complete=True)
@@ -122,27 +122,26 @@ class Replay:
         """Step a motion: engagement and forces at each step, then its material removed."""
         tool = self._tools.get(move.tool)
         if tool is None or not self._material.near(tool, *_box(move)):
-            yield self._step(move, move.start_mm, move.end_mm, move.duration_s, None, None)
+            for start, end, duration_s in _pieces(move, math.inf, 0.5 * self.job.simulation.slice_pitch_mm):
+                yield self._step(move, start, end, duration_s, None, None)
             return
         self._refuse_start_inside(tool, move)
-        corners = move.corners_mm(self.job.simulation.step_mm, self._tolerance.chord_mm)
-        lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
-        total = float(lengths.sum())
-        touched: dict[CollisionKind, tuple[float, FloatArray, float]] = {}
-        for (start, end), length in zip(pairwise(corners), lengths, strict=True):
-            part = float(length) / total if total > 0.0 else 1.0
+        contacts = Contacts()
+        for start, end, duration_s in _pieces(move, self.job.simulation.step_mm, self._tolerance.chord_mm):
             begun_s = self._t_s
-            yield from self._piece(move, tool, start, end, move.duration_s * part)
-            for kind, volume in self._material.pass_through(tool, start, end, _forbidden(move)):
-                first_s, point, sum_mm3 = touched.get(kind, (begun_s, start, 0.0))
-                touched[kind] = (first_s, point, sum_mm3 + volume)
-        for kind, (first_s, point, volume) in touched.items():
-            yield self._collision(move, kind, point, volume, first_s)
+            for a, b, part_s in _frames(start, end, duration_s, self._frame_s):
+                yield from self._piece(move, tool, a, b, part_s)
+                contacts.add(self._material.cut(tool, a, b, _forbidden(move)), begun_s, start)
+                if self._preview.due(self._t_s):
+                    yield from self._changed_patches()
+            contacts.add(self._material.touches(tool, start, end), begun_s, start)
+        for kind, contact in contacts.found.items():
+            yield self._collision(move, kind, contact)
 
     def _piece(
         self, move: Move, tool: ToolSetup, start: FloatArray, end: FloatArray, duration_s: float
     ) -> Iterator[Record]:
-        """One straight piece of a motion."""
+        """The steps of one straight piece of a motion."""
         if _forbidden(move) is None and np.any(end != start):
             yield from self._cut(move, tool, start, end, duration_s)
         else:
@@ -191,8 +190,8 @@ class Replay:
             index=self._steps,
             t_s=self._t_s,
             duration_s=duration_s,
-            start_mm=_point(start),
-            end_mm=_point(end),
+            start_mm=point(start),
+            end_mm=point(end),
             nc_line=move.nc_line,
             tool=move.tool,
             rapid=move.rapid,
@@ -226,30 +225,12 @@ class Replay:
                 "tool change position)"
             )
 
-    def _collision(self, move: Move, kind: CollisionKind, start: FloatArray, volume: float, t_s: float) -> Collision:
-        x, y, z = start
-        what = {
-            "rapid": "rapid motion through the stock",
-            "spindle-stopped": "feed motion through the stock with the spindle stopped",
-            "shank": "the shank touches the stock",
-            "holder": "the holder touches the stock",
-        }[kind]
-        message = (
-            f"{self.job.program.file}:{move.nc_line}: T{move.tool}: {what}, "
-            f"from X{x:.3f} Y{y:.3f} Z{z:.3f}, {volume:.3g} mm3"
-        )
+    def _collision(self, move: Move, kind: CollisionKind, contact: Contact) -> Collision:
         self._totals.collisions += 1
+        collision = collision_record(kind, contact, move, str(self.job.program.file))
         if self._strict:
-            raise CollisionError(message)
-        return Collision(
-            t_s=t_s,
-            nc_line=move.nc_line,
-            tool=move.tool,
-            kind=kind,
-            point_mm=_point(start),
-            volume_mm3=volume,
-            message=message,
-        )
+            raise CollisionError(collision.message)
+        return collision
 
     def _changed_patches(self) -> Iterator[Record]:
         changed, self._material.changed = self._material.changed, []
@@ -278,6 +259,25 @@ class Replay:
         self.close()
 
 
+def _pieces(move: Move, step_mm: float, chord_mm: float) -> Iterator[tuple[FloatArray, FloatArray, float]]:
+    """A motion in straight pieces: start, end, duration."""
+    corners = move.corners_mm(step_mm, chord_mm)
+    lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+    total = float(lengths.sum())
+    for (start, end), length in zip(pairwise(corners), lengths, strict=True):
+        yield start, end, move.duration_s * (float(length) / total if total > 0.0 else 1.0)
+
+
+def _frames(
+    start: FloatArray, end: FloatArray, duration_s: float, longest_s: float
+) -> Iterator[tuple[FloatArray, FloatArray, float]]:
+    """A straight piece in parts that take no longer than the time between key frames."""
+    count = max(1, math.ceil(duration_s / longest_s)) if np.any(end != start) else 1
+    ends = [start + (end - start) * (i / count) for i in range(count)] + [end]
+    for a, b in pairwise(ends):
+        yield a, b, duration_s / count
+
+
 def _box(move: Move) -> tuple[FloatArray, FloatArray]:
     """Two opposite corners of a motion's box."""
     if move.arc is None:
@@ -292,7 +292,3 @@ def _forbidden(move: Move) -> CollisionKind | None:
     if move.rapid:
         return "rapid"
     return "spindle-stopped" if move.spindle_rpm == 0.0 else None
-
-
-def _point(p: FloatArray) -> tuple[float, float, float]:
-    return float(p[0]), float(p[1]), float(p[2])

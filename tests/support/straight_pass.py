@@ -14,7 +14,7 @@ from twin.arrays import FloatArray
 from twin.cutting.coefficients import CuttingCoefficients
 from twin.cutting.engagement import EngagementMap, EngagementRule, Engager
 from twin.cutting.forces import ForceModel
-from twin.motion.sweep import Body, Sweep
+from twin.motion.sweep import Body, Sweep, SweptVolume
 from twin.tolerance import Tolerance
 from twin.tools.edges import cutting_edges
 from twin.tools.shape import tool_shape
@@ -105,7 +105,9 @@ class StraightPass:
         """Engagement with the tool somewhat forward of the place where forces are taken."""
         tip = np.array([AT_X_MM, 0.0, -self.case["axial_depth_mm"]]) + forward_mm * self.feed
         per_tooth = self.per_rev_mm / self.edges.teeth
-        found = self.engager.engage(tip, self.feed, self.case["feed_mm_min"] / 60.0, per_tooth, self.workpiece, [])
+        found = self.engager.engage(
+            tip, self.feed, self.case["feed_mm_min"] / 60.0, per_tooth, self.workpiece, SweptVolume([])
+        )
         assert found is not None
         return found
 

@@ -9,7 +9,7 @@ missed or counted twice.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.cutting import kernels
-from twin.motion.sweep import Sweep, clear_swept
+from twin.motion.sweep import SweptVolume
 from twin.record import Engagement
 from twin.tolerance import Tolerance
 from twin.tools.edges import CuttingEdges, meridian
@@ -79,7 +79,7 @@ class Engager:
         feed_mm_s: float,
         feed_per_tooth_mm: float,
         workpiece: TriSlices,
-        pending: Sequence[Sweep],
+        pending: SweptVolume,
     ) -> EngagementMap | None:
         """The engagement at one tool position, or None in air.
 
@@ -120,16 +120,16 @@ class Engager:
         summary = self._summary(share, turn, elements, feed, feed_mm_s, feed_per_tooth_mm)
         return EngagementMap(share, turn, elements, summary)
 
-    def _in_material(self, points: FloatArray, workpiece: TriSlices, pending: Sequence[Sweep]) -> NDArray[np.bool_]:
+    def _in_material(self, points: FloatArray, workpiece: TriSlices, pending: SweptVolume) -> NDArray[np.bool_]:
         votes = np.zeros(len(points), dtype=np.int8)
         if len(points):
             workpiece.count_votes(points, self._enough, votes)
         inside = votes >= self._enough
         if inside.any():
-            clear_swept(points, inside, pending, self._tolerance.depth_mm)
+            pending.clear(points, inside, self._tolerance.depth_mm)
         return np.asarray(inside)
 
-    def _shares(self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: Sequence[Sweep]) -> FloatArray:
+    def _shares(self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: SweptVolume) -> FloatArray:
         """Engaged share of each element, from where along the meridian the material ends."""
         found = np.empty((len(self._cos_theta) * elements, 2), dtype=np.int64)
         found = found[: kernels.transitions(self._status, elements, found)]
@@ -148,7 +148,7 @@ class Engager:
         kernels.weights(self._status, elements, self._edges.bounds_mm, found, boundary, share)
         return share
 
-    def _turns(self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: Sequence[Sweep]) -> FloatArray:
+    def _turns(self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: SweptVolume) -> FloatArray:
         """Where between two rows an element changes between engaged and free, as a part of the way."""
         found = np.empty((len(self._cos_theta) * elements, 2), dtype=np.int64)
         found = found[: kernels.turns(self._status, elements, found)]
@@ -169,7 +169,7 @@ class Engager:
         points: Callable[[FloatArray], FloatArray],
         found: NDArray[np.int64],
         workpiece: TriSlices,
-        pending: Sequence[Sweep],
+        pending: SweptVolume,
     ) -> FloatArray:
         """Where, from 0 to 1, the material ends between the two elements of each pair in ``found``."""
         low, high = np.zeros(len(found)), np.ones(len(found))

@@ -15,7 +15,7 @@ from twin.geometry.region import Region
 from twin.geometry.strips import Strips
 
 #: Cells are squares of this many slice pitches.
-CELL_PITCHES = 10
+CELL_PITCHES = 5
 _FREE_LISTS = 40
 
 

@@ -123,16 +123,15 @@ class Sweep:
             room *= 2
 
 
-def clear_swept(
-    points_mm: FloatArray, in_material: NDArray[np.bool_], sweeps: Sequence[Sweep], depth_mm: float
-) -> None:
-    """Clear the flags of the points that lie deeper than ``depth_mm`` inside one of the sweeps, in place."""
-    if sweeps:
-        kernels.outside_sweeps(
-            points_mm,
-            in_material,
-            np.array([s.body.parameters for s in sweeps]),
-            np.array([s.start_mm for s in sweeps]),
-            np.array([s.end_mm - s.start_mm for s in sweeps]),
-            depth_mm,
-        )
+class SweptVolume:
+    """The union of several sweeps, ready to be asked for many points."""
+
+    def __init__(self, sweeps: Sequence[Sweep]) -> None:
+        self._parameters = np.array([s.body.parameters for s in sweeps])
+        self._starts = np.array([s.start_mm for s in sweeps])
+        self._moves = np.array([s.end_mm - s.start_mm for s in sweeps])
+
+    def clear(self, points_mm: FloatArray, in_material: NDArray[np.bool_], depth_mm: float) -> None:
+        """Clear the flags of the points that lie deeper than ``depth_mm`` inside one of the sweeps, in place."""
+        if len(self._starts):
+            kernels.outside_sweeps(points_mm, in_material, self._parameters, self._starts, self._moves, depth_mm)

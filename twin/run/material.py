@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from typing import TypeAlias
 
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.motion.sweep import Body, Sweep
+from twin.motion.sweep import Body, Sweep, SweptVolume
 from twin.record import CollisionKind
 from twin.run.setup import ToolSetup
 from twin.tolerance import Tolerance
@@ -18,6 +19,10 @@ from twin.workpiece.trislice import TriSlices
 #: Sweeps wait until the tool has gone on by this many slice pitches, or until this many are waiting.
 PENDING_PITCHES = 10.0
 PENDING_SWEEPS = 48
+
+
+#: Kind of a collision and the volume of material in its way.
+Touch: TypeAlias = tuple[CollisionKind, float]
 
 
 class Material:
@@ -37,9 +42,9 @@ class Material:
         self.changed: list[tuple[FloatArray, FloatArray]] = []
 
     @property
-    def pending(self) -> list[Sweep]:
-        """Sweeps that are not yet subtracted from the slices, oldest first."""
-        return [sweep for sweep, _ in self._waiting]
+    def pending(self) -> SweptVolume:
+        """What is not yet subtracted from the slices."""
+        return SweptVolume([sweep for sweep, _ in self._waiting])
 
     def near(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> bool:
         """Whether the box of a motion of any of a tool's bodies meets the stock's box."""
@@ -49,24 +54,27 @@ class Material:
         low, high = Sweep(body, start_mm, end_mm).bounds_mm
         return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
 
-    def pass_through(
+    def cut(
         self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray, forbidden: CollisionKind | None
-    ) -> Iterator[tuple[CollisionKind, float]]:
-        """Move a tool in a straight line: its cutting part removes material, now or a little later.
+    ) -> Iterator[Touch]:
+        """Move the cutting part in a straight line: it removes material, now or a little later.
 
         Args:
-            forbidden: what it is called when the cutting part meets material, None where it may.
+            forbidden: what it is called when it meets material, None where it may.
 
         Yields:
-            Kind and volume of each touch that must not be.
+            The touch, if it is forbidden and there is one.
         """
         if forbidden is None:
             self._wait(Sweep(tool.cutter, start_mm, end_mm), tool.number)
-        else:
-            self.flush()
-            volume = self._subtract(Sweep(tool.cutter, start_mm, end_mm), tool.number)
-            if self.significant(volume):
-                yield forbidden, volume
+            return
+        self.flush()
+        volume = self._subtract(Sweep(tool.cutter, start_mm, end_mm), tool.number)
+        if self.significant(volume):
+            yield forbidden, volume
+
+    def touches(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> Iterator[Touch]:
+        """Shank and holder moved in a straight line, after the cutting part has gone there; they remove nothing."""
         for kind, body in tool.rigid:
             if self._meets(body, start_mm, end_mm):
                 self.flush()

@@ -11,7 +11,7 @@ from twin.workpiece.to_mesh import patch_grid, patch_mesh
 from twin.workpiece.trislice import TriSlices
 
 #: Key frames of the workpiece in a run.
-FRAMES = 40
+FRAMES = 20
 
 
 class Preview:
@@ -19,18 +19,20 @@ class Preview:
 
     Args:
         pitch_mm: size of the mesh's cells; None for a fineness that suits the stock's size.
+        every_s: machine time between key frames.
     """
 
-    def __init__(self, workpiece: TriSlices, pitch_mm: float | None) -> None:
+    def __init__(self, workpiece: TriSlices, pitch_mm: float | None, every_s: float) -> None:
         self._workpiece = workpiece
         self._grid: PatchGrid = patch_grid(workpiece, pitch_mm=pitch_mm)
-        self._next_s = 0.0
+        self._every_s = every_s
+        self._next_s = every_s
 
-    def due(self, t_s: float, planned_s: float) -> bool:
+    def due(self, t_s: float) -> bool:
         """Whether it is time for the next key frame."""
         if t_s < self._next_s:
             return False
-        self._next_s = t_s + planned_s / FRAMES
+        self._next_s = t_s + self._every_s
         return True
 
     def all_patches(self, t_s: float) -> Iterator[WorkpiecePatch]:

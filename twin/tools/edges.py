@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.arrays import FloatArray, frozen
 from twin.errors import ToolError
+from twin.tools import kernels
 from twin.tools.shape import ToolShape
 
 
@@ -126,24 +127,9 @@ def meridian(shape: ToolShape, s_mm: FloatArray) -> MeridianPoints:
     Args:
         s_mm: shape (n,), lengths.
     """
-    on_arc = s_mm - shape.disc_mm
-    arc = shape.corner_mm * (0.5 * math.pi - shape.taper_rad)
-    kappa = np.clip(on_arc / shape.corner_mm, 0.0, None) if shape.corner_mm > 0.0 else np.zeros_like(s_mm)
-    on_wall = on_arc - arc
-    regions = [on_arc < 0.0, on_wall < 0.0]
-    return MeridianPoints(
-        np.select(
-            regions,
-            [s_mm, shape.disc_mm + shape.corner_mm * np.sin(kappa)],
-            shape.arc_radius_mm + on_wall * math.sin(shape.taper_rad),
-        ),
-        np.select(
-            regions,
-            [np.zeros_like(s_mm), shape.corner_mm * (1.0 - np.cos(kappa))],
-            shape.arc_height_mm + on_wall * math.cos(shape.taper_rad),
-        ),
-        np.select(regions, [np.zeros_like(s_mm), kappa], 0.5 * math.pi - shape.taper_rad),
-    )
+    out = np.empty((3, len(s_mm)))
+    kernels.meridian_points(s_mm, shape.disc_mm, shape.corner_mm, shape.taper_rad, out)
+    return MeridianPoints(*out)
 
 
 def _bottom_bounds(shape: ToolShape, step: float) -> FloatArray:

@@ -13,7 +13,7 @@ from twin.arrays import FloatArray
 from twin.cutting.coefficients import CuttingCoefficients
 from twin.cutting.engagement import Engager
 from twin.cutting.forces import ForceModel
-from twin.motion.sweep import Body, Sweep
+from twin.motion.sweep import Body, Sweep, SweptVolume
 from twin.tolerance import Tolerance
 from twin.tools.edges import cutting_edges
 from twin.tools.shape import ToolShape, tool_shape
@@ -23,6 +23,7 @@ from twin.workpiece.trislice import CellSlices
 
 TOLERANCE = Tolerance.for_pitch(0.2)
 COEFFICIENTS = CuttingCoefficients(Ktc=800.0, Kte=20.0, Krc=200.0, Kre=30.0, Kac=150.0, Kae=5.0, source="test")
+NOTHING = SweptVolume([])
 REVOLUTION = np.radians(np.arange(360.0))
 
 
@@ -35,7 +36,7 @@ def forces_at(
 ) -> FloatArray:
     edges = cutting_edges(shape, teeth=teeth, helix_deg=30.0, axial_step_mm=0.2)
     engager = Engager(shape, edges, 360, "majority", TOLERANCE)
-    found = engager.engage(tip, feed, 10.0, 0.05, stock, [])
+    found = engager.engage(tip, feed, 10.0, 0.05, stock, NOTHING)
     assert found is not None
     return ForceModel(edges, COEFFICIENTS, 360, TOLERANCE).forces(sense * REVOLUTION, sense, feed, 0.05 * teeth, found)
 
@@ -79,8 +80,8 @@ def test_no_force_in_air() -> None:
     engager = Engager(shape, edges, 360, "majority", TOLERANCE)
     forward = np.array([1.0, 0.0, 0.0])
     stock = block((0, -8, -6), (30, 8, 0))
-    assert engager.engage(np.array([10.0, 0.0, 0.5]), forward, 10.0, 0.05, stock, []) is None
-    assert engager.engage(np.array([-9.0, 0.0, -2.0]), forward, 10.0, 0.05, stock, []) is None
+    assert engager.engage(np.array([10.0, 0.0, 0.5]), forward, 10.0, 0.05, stock, NOTHING) is None
+    assert engager.engage(np.array([-9.0, 0.0, -2.0]), forward, 10.0, 0.05, stock, NOTHING) is None
 
 
 @pytest.mark.parametrize("angle_deg", [0.0, 17.0, 45.0])
@@ -95,7 +96,7 @@ def test_an_exact_retrace_cuts_next_to_nothing(kind: str, angle_deg: float) -> N
     engager = Engager(shape, edges, 360, "majority", TOLERANCE)
     model = ForceModel(edges, COEFFICIENTS, 360, TOLERANCE)
     depth = np.array([0.0, 0.0, -2.0])
-    found = engager.engage(depth, forward, 10.0, 0.05, stock, [])
+    found = engager.engage(depth, forward, 10.0, 0.05, stock, NOTHING)
     assert found is not None
     fresh, fresh_load = found.summary, model.forces(REVOLUTION, 1, forward, 0.1, found)
     sweep = Sweep(Body.of(shape, chord_mm=TOLERANCE.chord_mm), depth - 40.0 * forward, depth + 40.0 * forward)
@@ -104,7 +105,7 @@ def test_an_exact_retrace_cuts_next_to_nothing(kind: str, angle_deg: float) -> N
         assert removal.cut(sweep) == pytest.approx(0.0, abs=1e-9)
     for x in (-5.0, 0.03, 4.71):
         for feed in (forward, -forward):
-            found = engager.engage(x * forward + depth, feed, 10.0, 0.05, stock, [])
+            found = engager.engage(x * forward + depth, feed, 10.0, 0.05, stock, NOTHING)
             if found is not None:
                 load = model.forces(REVOLUTION, 1, feed, 0.1, found)
                 assert found.summary.removal_rate_mm3_s < 0.006 * fresh.removal_rate_mm3_s
@@ -123,7 +124,7 @@ def test_pending_sweeps_count_as_cut() -> None:
         removal.cut(sweep)
     engager = Engager(shape, edges, 360, "majority", TOLERANCE)
     loads = []
-    for stock, pending in ((waiting, [sweep]), (cut, [])):
+    for stock, pending in ((waiting, SweptVolume([sweep])), (cut, NOTHING)):
         found = engager.engage(tip, feed, 10.0, 0.05, stock, pending)
         assert found is not None
         loads.append(model.forces(REVOLUTION, 1, feed, 0.1, found))
@@ -151,7 +152,7 @@ def test_a_plunge_removes_the_tools_section(kind: str, corner: float) -> None:
     shape = tool_shape(kind, 8.0, 10.0, corner)  # type: ignore[arg-type]
     tip, down = np.array([0.0, 0.0, -5.0]), np.array([0.0, 0.0, -1.0])
     edges = cutting_edges(shape, teeth=2, axial_step_mm=0.2)
-    found = Engager(shape, edges, 360, "majority", TOLERANCE).engage(tip, down, 10.0, 0.05, stock, [])
+    found = Engager(shape, edges, 360, "majority", TOLERANCE).engage(tip, down, 10.0, 0.05, stock, NOTHING)
     assert found is not None
     assert found.summary.removal_rate_mm3_s == pytest.approx(16.0 * math.pi * 10.0, rel=2e-3)
     load = forces_at(shape, stock, tip, down)
@@ -164,7 +165,7 @@ def test_engagement_is_told_in_the_shops_terms() -> None:
     shape = tool_shape("ball", 8.0, 10.0)
     edges = cutting_edges(shape, teeth=2, axial_step_mm=0.2)
     engager = Engager(shape, edges, 360, "majority", TOLERANCE)
-    found = engager.engage(np.array([12.0, 0.0, -1.93]), np.array([1.0, 0.0, 0.0]), 10.0, 0.05, stock, [])
+    found = engager.engage(np.array([12.0, 0.0, -1.93]), np.array([1.0, 0.0, 0.0]), 10.0, 0.05, stock, NOTHING)
     assert found is not None
     assert found.summary.axial_depth_mm == pytest.approx(1.93, abs=0.01)
     assert found.summary.radial_width_mm == pytest.approx(2.0 * math.sqrt(16.0 - 2.07**2), rel=0.01)

@@ -9,7 +9,7 @@ import pytest
 import shapely
 
 from twin.arrays import FloatArray
-from twin.motion.sweep import Body, Sweep, clear_swept
+from twin.motion.sweep import Body, Sweep, SweptVolume
 from twin.tools.shape import ToolShape, tool_shape
 
 SHAPES = {
@@ -73,7 +73,7 @@ def test_points_in_the_sweep_are_cleared_and_others_are_not(kind: str, move: tup
     between = np.linalg.norm(move) / (POSITIONS - 1)
     points = rng.uniform((-6.0, -6.0, -4.0), (8.0, 8.0, 9.0), (SAMPLES, 3))
     left = np.ones(SAMPLES, dtype=bool)
-    clear_swept(points, left, [Sweep(Body.of(shape), start, end)], 0.0)
+    SweptVolume([Sweep(Body.of(shape), start, end)]).clear(points, left, 0.0)
     assert not np.any(left & in_sweep(shape, start, end, points, -1e-9))
     assert not np.any(~left & ~in_sweep(shape, start, end, points, 1e-9 + between))
 
@@ -106,5 +106,5 @@ def test_a_body_standing_over_the_tip_is_moved_up() -> None:
     assert low.tolist() == [-2.0, -2.0, 10.0]
     assert high.tolist() == [2.0, 2.0, 15.0]
     left = np.ones(3, dtype=bool)
-    clear_swept(np.array([(0.0, 0.0, 9.0), (0.0, 1.0, 12.0), (0.0, 0.0, 16.0)]), left, [sweep], 0.0)
+    SweptVolume([sweep]).clear(np.array([(0.0, 0.0, 9.0), (0.0, 1.0, 12.0), (0.0, 0.0, 16.0)]), left, 0.0)
     assert left.tolist() == [True, False, True]

@@ -1,0 +1,68 @@
+"""Collisions of one motion, gathered over its pieces and told as one record for each kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from twin.arrays import FloatArray
+from twin.motion.path import Move
+from twin.record import Collision, CollisionKind
+
+_WORDS: dict[CollisionKind, str] = {
+    "rapid": "rapid motion through the stock",
+    "spindle-stopped": "feed motion through the stock with the spindle stopped",
+    "shank": "the shank touches the stock",
+    "holder": "the holder touches the stock",
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contact:
+    """Where and when a collision began, and the material in its way."""
+
+    t_s: float
+    start_mm: FloatArray
+    volume_mm3: float
+
+
+class Contacts:
+    """Collisions of one motion by kind.
+
+    What a cutting part removes adds up over the pieces of a motion. Shank and holder remove nothing and would meet the
+    same material again in the next piece, so for them the piece that met most counts.
+    """
+
+    def __init__(self) -> None:
+        self.found: dict[CollisionKind, Contact] = {}
+
+    def add(self, touches: Iterable[tuple[CollisionKind, float]], t_s: float, start_mm: FloatArray) -> None:
+        """Note the touches of one piece that began at a time and place."""
+        for kind, volume in touches:
+            first = self.found.get(kind, Contact(t_s, start_mm, 0.0))
+            removing = kind in ("rapid", "spindle-stopped")
+            total = first.volume_mm3 + volume if removing else max(first.volume_mm3, volume)
+            self.found[kind] = Contact(first.t_s, first.start_mm, total)
+
+
+def collision_record(kind: CollisionKind, contact: Contact, move: Move, program: str) -> Collision:
+    """The record of a collision, with a line for people that names NC line and place."""
+    x, y, z = point(contact.start_mm)
+    message = (
+        f"{program}:{move.nc_line}: T{move.tool}: {_WORDS[kind]}, "
+        f"from X{x:.3f} Y{y:.3f} Z{z:.3f}, {contact.volume_mm3:.3g} mm3"
+    )
+    return Collision(
+        t_s=contact.t_s,
+        nc_line=move.nc_line,
+        tool=move.tool,
+        kind=kind,
+        point_mm=(x, y, z),
+        volume_mm3=contact.volume_mm3,
+        message=message,
+    )
+
+
+def point(p: FloatArray) -> tuple[float, float, float]:
+    """Coordinates as plain numbers."""
+    return float(p[0]), float(p[1]), float(p[2])
