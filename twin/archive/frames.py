@@ -151,9 +151,9 @@ class RunFile:
             return chunk.data
         if chunk.compression != "zstd":
             raise ArchiveError(f"{self.path}: packed by {chunk.compression!r}, expected 'zstd' or nothing")
-        if zstandard.frame_content_size(chunk.data) not in (-1, chunk.uncompressed_size):
-            raise self.damaged(offset)
         try:
+            if zstandard.frame_content_size(chunk.data) not in (-1, chunk.uncompressed_size):
+                raise self.damaged(offset)
             return zstandard.ZstdDecompressor().decompress(chunk.data, max_output_size=chunk.uncompressed_size)
         except zstandard.ZstdError:
             raise self.damaged(offset) from None

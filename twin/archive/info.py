@@ -89,8 +89,10 @@ def _from_index(file: RunFile, start: int) -> tuple[RunSummary | None, dict[str,
         elif frame.opcode == Opcode.METADATA_INDEX:
             index = MetadataIndex.read(stream(frame.body))
             if index.name == meta.SUMMARY:
-                entry = Metadata.read(stream(next(file.frames(index.offset)).body))
-                summary = meta.to_summary(entry.metadata)
+                frame_there = next(file.frames(index.offset), None)
+                if frame_there is None:
+                    raise ValueError(f"no metadata at byte {index.offset}")
+                summary = meta.to_summary(Metadata.read(stream(frame_there.body)).metadata)
     if statistics is None:
         return summary, {}, 0
     counts = {topics[c]: n for c, n in statistics.channel_message_counts.items()}
