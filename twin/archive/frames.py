@@ -126,7 +126,10 @@ class RunFile:
         first = self._frame(len(MAGIC))
         if first is None or first.opcode != Opcode.HEADER:
             raise ArchiveError(f"{self.path}: ends within its first bytes, expected a run's MCAP file")
-        profile = Header.read(stream(first.body)).profile
+        try:
+            profile = Header.read(stream(first.body)).profile
+        except DAMAGE:
+            raise self.damaged(first.offset) from None
         if profile != schemas.PROFILE:
             raise ArchiveError(f"{self.path}: an MCAP file of profile {profile!r}, expected {schemas.PROFILE!r}")
 
