@@ -64,7 +64,7 @@ class Replay:
         self._clock = SpindleClock(self._rows)
         self._descriptions = {n: t.description for n, t in self._tools.items()}
         self._totals = Totals(self._descriptions)
-        self._frame_s = self.planned_time_s / FRAMES
+        self._frame_s = self.planned_time_s / FRAMES or math.inf
         self._preview = Preview(self.workpiece, job.simulation.preview_pitch_mm, self._frame_s)
         self._t_s = 0.0
         self._steps = 0

@@ -28,6 +28,8 @@ from twin.workpiece.trislice import TriSlices
 #: ``majority``: two of the three nearest slices must have material at a point. ``any``: one (the tri-slice paper).
 EngagementRule: TypeAlias = Literal["majority", "any"]
 
+#: End edges of flat-bottomed tools rise towards the axis by about this much, so that shallower ramps do not use them.
+DISH_DEG = 2.0
 _HALVINGS = 5
 NO_ENGAGEMENT = Engagement()
 
@@ -67,6 +69,8 @@ class Engager:
         theta = np.arange(rows) * (2.0 * math.pi / rows)
         self._cos_theta, self._sin_theta = np.cos(theta), np.sin(theta)
         self._cos_kappa, self._sin_kappa = np.cos(edges.kappa_rad), np.sin(edges.kappa_rad)
+        end_edge = edges.kappa_rad == 0.0
+        self._gate = np.where(end_edge, math.sin(math.radians(DISH_DEG)), tolerance.gate)
         n = len(edges.z_mm)
         self._status = np.full((rows, n), -1, dtype=np.int8)
         self._points = np.empty((rows * n, 3))
@@ -103,7 +107,7 @@ class Engager:
             self._cos_kappa,
             self._sin_kappa,
             elements,
-            self._tolerance.gate,
+            self._gate,
             self._status,
             self._points,
             self._places,

@@ -30,7 +30,7 @@ def front_points(
     cos_kappa: FloatArray,
     sin_kappa: FloatArray,
     elements: int,
-    gate: float,
+    gate: FloatArray,
     status: NDArray[np.int8],
     points: FloatArray,
     places: NDArray[np.int64],
@@ -41,7 +41,7 @@ def front_points(
         tip: tool tip, mm.
         feed: unit feed direction.
         elements: how many of the elements, from the lowest, are asked for.
-        gate: least n.f of a front point.
+        gate: shape (elements or more,), least n.f of a front point of each element.
         status: shape (rows, elements or more): set to -1 behind the gate, 0 before it.
         points, places: shapes (n, 3) and (n, 2): the points and their row and column in the map.
 
@@ -52,7 +52,7 @@ def front_points(
     for j in range(len(cos_theta)):
         across = cos_theta[j] * feed[0] + sin_theta[j] * feed[1]
         for i in range(elements):
-            if across * sin_kappa[i] - feed[2] * cos_kappa[i] > gate:
+            if across * sin_kappa[i] - feed[2] * cos_kappa[i] > gate[i]:
                 status[j, i] = 0
                 points[n, 0] = tip[0] + radius[i] * cos_theta[j]
                 points[n, 1] = tip[1] + radius[i] * sin_theta[j]

@@ -84,7 +84,7 @@ def cutting_edges(
     On the wall and the corner arc elements end at multiples of ``axial_step_mm`` in height, so that depths of cut which
     are such multiples fall between elements, and are cut shorter where the meridian is flat, so that none is longer
     than 1.2 ``axial_step_mm`` along the meridian either. The flat bottom of a tool carries end edges from the axis to
-    the corner: their normal looks down, so they cut in plunges and ramps only.
+    the corner: their normal looks down (kappa = 0), so they cut in plunges and ramps only.
 
     Args:
         teeth: number of flutes, at least 1.

@@ -160,6 +160,20 @@ def test_a_plunge_removes_the_tools_section(kind: str, corner: float) -> None:
     assert np.all(load[:, 2] > 0.0)
 
 
+def test_end_edges_cut_in_ramps_steeper_than_their_dish_only() -> None:
+    stock = block((-30, -8, -9), (30, 8, 0))
+    shape = tool_shape("flat", 8.0, 10.0)
+    axial = []
+    for ramp_deg in (0.0, 1.9, 2.1, 5.0):
+        ramp = math.radians(ramp_deg)
+        load = forces_at(shape, stock, np.array([0.0, 0.0, -3.0]), np.array([math.cos(ramp), 0.0, -math.sin(ramp)]))
+        axial.append(load[:, 2].mean())
+    assert axial[1] == pytest.approx(axial[0], rel=0.02)
+    # two teeth with end edges of 4 mm each press upwards: at least their edge force
+    assert axial[2] > axial[1] + 2 * 4.0 * COEFFICIENTS.Kre
+    assert axial[3] > axial[2]
+
+
 def test_engagement_is_told_in_the_shops_terms() -> None:
     stock = block((0, -8, -6), (30, 8, 0))
     shape = tool_shape("ball", 8.0, 10.0)
