@@ -1,1 +1,0 @@
-"""Where records and measured logs come from."""
