@@ -125,6 +125,16 @@ def test_fast_and_reference_store_agree(tmp_path: Path) -> None:
     assert fast.mean_force_n == pytest.approx(slow.mean_force_n, rel=1e-3)
 
 
+def test_a_path_in_many_short_blocks_has_the_forces_of_one_long_block(tmp_path: Path) -> None:
+    """Each block begins on the surface that the one before has just made; sweeps that wait keep that surface exact."""
+    one = summary_of(run(make(tmp_path, SLOT)))
+    blocks = "".join(f"X{-6 + 0.3 * i:.3f}\n" for i in range(1, 141))
+    many = summary_of(run(make(tmp_path, SLOT.replace("X36\n", blocks))))
+    assert many.mean_force_n == pytest.approx(one.mean_force_n, rel=0.01)
+    assert many.peak_force_n == pytest.approx(one.peak_force_n, rel=0.02)
+    assert many.removed_volume_mm3 == pytest.approx(one.removed_volume_mm3, rel=2e-3)
+
+
 def test_m4_mirrors_the_slot(tmp_path: Path) -> None:
     right = summary_of(run(make(tmp_path, SLOT)))
     left = summary_of(run(make(tmp_path, SLOT.replace("S3000 M3", "S3000 M4"))))

@@ -1,0 +1,76 @@
+"""Speed of removal alone, fast store beside reference store, and its growth over a zigzag: prints one JSON object.
+
+    python -m benchmarks.removal [--passes 40] [--reference-passes 2]
+
+Ball R4, 2 mm deep, slices at 0.1 mm, one sweep a millimetre. The reference store is so slow that a few passes tell.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import platform
+import resource
+import statistics
+import subprocess
+import time
+
+import numpy as np
+
+from twin.motion.sweep import Body, Sweep
+from twin.tolerance import Tolerance
+from twin.tools.shape import tool_shape
+from twin.workpiece.removal import Removal
+from twin.workpiece.stock import box_slices
+from twin.workpiece.trislice import CellSlices, PolygonSlices, TriSlices
+
+LENGTH_MM = 30.0
+PITCH_MM = 0.1
+STEP_OVER_MM = 0.5
+
+
+def passes(piece: TriSlices, count: int) -> list[float]:
+    """Milliseconds per mm of path of each pass."""
+    tolerance = Tolerance.for_pitch(PITCH_MM)
+    body = Body.of(tool_shape("ball", 8.0, 20.0), chord_mm=tolerance.chord_mm)
+    times = []
+    with Removal(piece, tolerance.chord_mm) as removal:
+        for number in range(count):
+            y = 4.0 + STEP_OVER_MM * number
+            begin = time.perf_counter()
+            for x in np.arange(0.0, LENGTH_MM):
+                removal.cut(Sweep(body, np.array([x, y, -2.0]), np.array([x + 1.0, y, -2.0])))
+            times.append((time.perf_counter() - begin) * 1000.0 / LENGTH_MM)
+    return times
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--passes", type=int, default=40)
+    parser.add_argument("--reference-passes", type=int, default=2)
+    options = parser.parse_args()
+    slices = box_slices((0.0, 0.0, -5.0), (LENGTH_MM, 8.0 + STEP_OVER_MM * options.passes, 0.0), PITCH_MM)
+    passes(CellSlices(slices), 1)
+    fast = passes(CellSlices(slices), options.passes)
+    slow = passes(PolygonSlices(slices), options.reference_passes)
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
+    same = len(slow)
+    print(
+        json.dumps(
+            {
+                "benchmark": "removal",
+                "fast_median_ms_per_mm": round(statistics.median(fast), 3),
+                "reference_median_ms_per_mm": round(statistics.median(slow), 3),
+                "fast_over_reference": round(statistics.median(slow) / statistics.median(fast[:same]), 2),
+                "last_pass_over_second": round(statistics.median(fast[-3:]) / statistics.median(fast[1:4]), 3),
+                "passes": options.passes,
+                "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, 1),
+                "python": platform.python_version(),
+                "commit": commit.stdout.strip(),
+            }
+        )
+    )
+
+
+if __name__ == "__main__":
+    main()
