@@ -506,8 +506,15 @@ def fill_plane(
                 if n >= len(work):
                     return SCRATCH_FULL
                 n = _emit(work, n, a, b, edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], edges[e, 4])
+        repeats = False
         for tile in range(tiles):
             top = v_low + (tile + 1) * h
+            lowest = math.inf
+            for e in range(n):
+                lowest = min(lowest, work[e, 1], work[e, 3])
+            if repeats and lowest > top:
+                state[cells + column * tiles + tile] = state[cells + column * tiles + tile - 1]
+                continue
             count = 0
             rest = 0
             n_toggles = 0
@@ -537,9 +544,12 @@ def fill_plane(
                 if count >= len(out):
                     return SCRATCH_FULL
                 count = _emit(out, count, toggles[t], toggles[t + 1], c0, top, c1, top, 1.0)
+            # with all edges above, the next tile is like this one if this one is all material or none
+            repeats = rest == n
             n = rest
             cell = cells + column * tiles + tile
             closed = _spans_top(out, count, c0, c1, top)
+            repeats = repeats and (closed or count == 0)
             if closed:
                 state[cell] = FULL
             elif not _store(cell, out, count, state, start, size, room, pool, free):
