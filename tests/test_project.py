@@ -1,0 +1,145 @@
+"""The house in order: what the pages name exists, what the rules list is complete, and files stay short."""
+
+from __future__ import annotations
+
+import ast
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from twin.cli.app import app
+from twin.job import JobFile
+
+ROOT = Path(__file__).parents[1]
+SOURCES = sorted(p for folder in ("gcode", "twin") for p in (ROOT / folder).rglob("*.py"))
+PYTHON = SOURCES + sorted(
+    p for folder in ("tests", "examples", "benchmarks", "docs") for p in (ROOT / folder).rglob("*.py")
+)
+PAGES = sorted((*ROOT.glob("*.md"), *(p for f in ("docs", "benchmarks", "tests") for p in (ROOT / f).rglob("*.md"))))
+MOST_LINES = 400
+
+#: A name in backticks: words, perhaps joined by dots.
+_QUOTED = re.compile(r"`([^`\n]+)`")
+_LINK = re.compile(r"\]\(([^)\s]+)\)")
+_FILE = re.compile(r"^(?:gcode|twin|tests|docs|examples|benchmarks|recordings)/[\w./]+$")
+
+
+def name(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def is_kernels(path: Path) -> bool:
+    return path.name.endswith("kernels.py")
+
+
+def module(path: Path) -> str:
+    return name(path).removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+
+@pytest.fixture(scope="module")
+def settings() -> dict[str, Any]:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())
+
+
+def contract(settings: dict[str, Any], title: str) -> dict[str, Any]:
+    found: list[dict[str, Any]] = settings["tool"]["importlinter"]["contracts"]
+    return next(c for c in found if c["name"] == title)
+
+
+def imported(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            yield node.module
+
+
+def words_of(path: Path) -> set[str]:
+    return set(re.findall(r"[A-Za-z_]\w*", path.read_text()))
+
+
+def slug(heading: str) -> str:
+    """How GitHub names a heading's anchor."""
+    kept = re.sub(r"[^\w\s-]", "", heading.strip().lower())
+    return re.sub(r"\s", "-", kept)
+
+
+def test_files_stay_short() -> None:
+    # numba's cache does not see changes in other files, so a kernel's helpers must stay beside it
+    too_long = {
+        name(p): lines for p in PYTHON if not is_kernels(p) and (lines := len(p.read_text().splitlines())) > MOST_LINES
+    }
+    assert too_long == {}
+
+
+def test_only_kernels_know_numba() -> None:
+    assert [name(p) for p in SOURCES if not is_kernels(p) and "numba" in set(imported(p))] == []
+
+
+def test_every_kernels_module_is_under_the_rules_for_kernels(settings: dict[str, Any]) -> None:
+    kernels = [module(p) for p in SOURCES if is_kernels(p)]
+    rule = contract(settings, "kernels know arrays and numbers only")
+    untyped = [o["module"] for o in settings["tool"]["mypy"]["overrides"] if "disallow_untyped_decorators" in o]
+    assert sorted(rule["source_modules"]) == kernels
+    assert [sorted(m) for m in untyped] == [kernels]
+
+
+def test_every_part_of_twin_has_its_layer(settings: dict[str, Any]) -> None:
+    layers = contract(settings, "a folder of twin uses only those below it in this list")["layers"]
+    listed = {part.strip() for layer in layers for part in layer.split("|")}
+    parts = {".".join(module(p).split(".")[:2]) for p in SOURCES if module(p).startswith("twin.")}
+    assert listed == parts
+
+
+def test_names_of_the_nomenclature_are_in_the_code() -> None:
+    known = set().union(*(words_of(p) | set(module(p).split(".")) for p in SOURCES))
+    page = (ROOT / "docs" / "nomenclature.md").read_text()
+    words = {w for quoted in _QUOTED.findall(page) for w in re.findall(r"[A-Za-z_]\w*", quoted)}
+    assert len(words) > 30
+    assert words - known == set()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_links_of_pages_lead_somewhere(page: Path) -> None:
+    for target in _LINK.findall(page.read_text()):
+        if re.match(r"[a-z]+:", target):
+            continue
+        file, _, anchor = target.partition("#")
+        aim = page.parent / file if file else page
+        assert aim.exists(), f"{name(page)}: {target}"
+        if anchor:
+            slugs = {slug(line.lstrip("#")) for line in aim.read_text().splitlines() if line.startswith("#")}
+            assert anchor in slugs, f"{name(page)}: {target}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_files_named_by_pages_exist(page: Path) -> None:
+    named = [q for q in _QUOTED.findall(page.read_text()) if _FILE.match(q) and "/recordings/" not in q]
+    assert [n for n in named if not (ROOT / n).exists()] == []
+
+
+def test_the_job_files_page_has_every_key() -> None:
+    page = (ROOT / "docs" / "job-file.md").read_text()
+    sections = dict(re.findall(r"^## `\[+(\w+)\]+`\n(.*?)(?=^## |\Z)", page, flags=re.M | re.S))
+    schema = JobFile.model_json_schema()
+    assert set(sections) == set(schema["properties"])
+    for section, text in sections.items():
+        entry = schema["properties"][section]
+        ref = re.search(r"'\$ref': '#/\$defs/(\w+)'", str(entry))
+        assert ref is not None, section
+        keys = set(schema["$defs"][ref[1]]["properties"])
+        rows = {q for row in re.findall(r"^\| (`[^|]+) \|", text, flags=re.M) for q in _QUOTED.findall(row)}
+        assert rows == keys, section
+
+
+def test_the_command_lines_page_has_every_command_and_option() -> None:
+    page = (ROOT / "docs" / "command-line.md").read_text()
+    commands = [c.callback.__name__ for c in app.registered_commands if c.callback is not None]
+    assert commands == re.findall(r"^\| `twin (\w+)", page, flags=re.M)
+    options = set(re.findall(r'"(--[a-z-]+)"', (ROOT / "twin" / "cli" / "replay.py").read_text()))
+    assert options
+    assert {o for o in options if o not in page} == set()
