@@ -8,11 +8,7 @@ The run is a cut at 3600 rpm with a force sample each degree and a step each 30 
 from __future__ import annotations
 
 import argparse
-import json
-import platform
-import resource
 import statistics
-import subprocess
 import tempfile
 import time
 from collections.abc import Callable
@@ -21,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from mcap.writer import Writer
 
+from benchmarks.report import report
 from twin.archive import read_forces, schemas
 from twin.record import Engagement, ForceSamples, RunHeader, Step
 from twin.sinks.mcap_sink import McapSink
@@ -113,14 +110,6 @@ def rate(job: Callable[[], object], messages: int, repeat: int) -> float:
     return round(messages / statistics.median(times))
 
 
-def commit() -> str:
-    here = Path(__file__).parent
-    done = subprocess.run(
-        ["git", "rev-parse", "--short", "HEAD"], cwd=here, capture_output=True, text=True, check=False
-    )
-    return done.stdout.strip() or "unknown"
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=60.0, help="machine time of the run")
@@ -132,19 +121,15 @@ def main() -> None:
     part_count = sum(len(s.samples.t_s) for s in part)
     with tempfile.TemporaryDirectory() as folder:
         run, other = Path(folder) / "run.mcap", Path(folder) / "library.mcap"
-        result = {
-            "benchmark": "archive",
-            "commit": commit(),
-            "machine": f"{platform.machine()} {platform.system()} Python {platform.python_version()}",
-            "messages": count,
-            "repeat": options.repeat,
-            "write_messages_per_s": rate(lambda: write_run(run, steps), count, options.repeat),
-            "library_write_messages_per_s": rate(lambda: write_with_library(other, part), part_count, options.repeat),
-            "read_messages_per_s": rate(lambda: read_forces(run), count, options.repeat),
-            "bytes_per_message": round(run.stat().st_size / count, 1),
-            "peak_memory_mib": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
-        }
-    print(json.dumps(result, indent=1))
+        report(
+            "archive",
+            messages=count,
+            repeat=options.repeat,
+            write_messages_per_s=rate(lambda: write_run(run, steps), count, options.repeat),
+            library_write_messages_per_s=rate(lambda: write_with_library(other, part), part_count, options.repeat),
+            read_messages_per_s=rate(lambda: read_forces(run), count, options.repeat),
+            bytes_per_message=round(run.stat().st_size / count, 1),
+        )
 
 
 if __name__ == "__main__":

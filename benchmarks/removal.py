@@ -8,15 +8,12 @@ Ball R4, 2 mm deep, slices at 0.1 mm, one sweep a millimetre. The reference stor
 from __future__ import annotations
 
 import argparse
-import json
-import platform
-import resource
 import statistics
-import subprocess
 import time
 
 import numpy as np
 
+from benchmarks.report import report
 from twin.motion.sweep import Body, Sweep
 from twin.tolerance import Tolerance
 from twin.tools.shape import tool_shape
@@ -53,22 +50,13 @@ def main() -> None:
     passes(CellSlices(slices), 1)
     fast = passes(CellSlices(slices), options.passes)
     slow = passes(PolygonSlices(slices), options.reference_passes)
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
-    same = len(slow)
-    print(
-        json.dumps(
-            {
-                "benchmark": "removal",
-                "fast_median_ms_per_mm": round(statistics.median(fast), 3),
-                "reference_median_ms_per_mm": round(statistics.median(slow), 3),
-                "fast_over_reference": round(statistics.median(slow) / statistics.median(fast[:same]), 2),
-                "last_pass_over_second": round(statistics.median(fast[-3:]) / statistics.median(fast[1:4]), 3),
-                "passes": options.passes,
-                "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, 1),
-                "python": platform.python_version(),
-                "commit": commit.stdout.strip(),
-            }
-        )
+    report(
+        "removal",
+        fast_median_ms_per_mm=round(statistics.median(fast), 3),
+        reference_median_ms_per_mm=round(statistics.median(slow), 3),
+        reference_over_fast=round(statistics.median(slow) / statistics.median(fast[: len(slow)]), 2),
+        last_passes_over_first=round(statistics.median(fast[-3:]) / statistics.median(fast[1:4]), 3),
+        passes=options.passes,
     )
 
 

@@ -2,21 +2,18 @@
 
     python -m benchmarks.replay [--job examples/ball_slot/job.toml] [--repeat 3]
 
-Kernels are compiled by a first run that does not count. Records are thrown away; `benchmarks.archive` tells what keeping
-them costs.
+Kernels are compiled by a first run that does not count. Records are thrown away; `benchmarks.archive` tells what
+keeping them costs.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import platform
-import resource
 import statistics
-import subprocess
 import time
 from pathlib import Path
 
+from benchmarks.report import report
 from twin.job import Job, load_job
 from twin.record import RunSummary
 from twin.replay import Replay
@@ -42,26 +39,18 @@ def main() -> None:
     first_s, summary = once(job)
     walls = [once(job)[0] for _ in range(options.repeat)]
     median = statistics.median(walls)
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
-    print(
-        json.dumps(
-            {
-                "benchmark": "replay",
-                "job": options.job.parent.name,
-                "machine_time_s": round(summary.machine_time_s, 3),
-                "steps": summary.steps,
-                "samples": summary.samples,
-                "first_run_s": round(first_s, 3),
-                "median_s": round(median, 3),
-                "min_s": round(min(walls), 3),
-                "max_s": round(max(walls), 3),
-                "real_time_factor": round(summary.machine_time_s / median, 2),
-                "ms_per_step": round(1000.0 * median / summary.steps, 3),
-                "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, 1),
-                "python": platform.python_version(),
-                "commit": commit.stdout.strip(),
-            }
-        )
+    report(
+        "replay",
+        job=options.job.parent.name,
+        machine_time_s=round(summary.machine_time_s, 3),
+        steps=summary.steps,
+        samples=summary.samples,
+        first_run_s=round(first_s, 3),
+        median_s=round(median, 3),
+        min_s=round(min(walls), 3),
+        max_s=round(max(walls), 3),
+        real_time_factor=round(summary.machine_time_s / median, 2),
+        ms_per_step=round(1000.0 * median / summary.steps, 3),
     )
 
 

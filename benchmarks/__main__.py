@@ -1,0 +1,13 @@
+"""Run every benchmark with its defaults, one after the other, each in a process of its own.
+
+python -m benchmarks
+"""
+
+import subprocess
+import sys
+
+STAGES = ("replay", "removal", "archive")
+
+if __name__ == "__main__":
+    for stage in STAGES:
+        subprocess.run([sys.executable, "-m", f"benchmarks.{stage}"], check=True)
