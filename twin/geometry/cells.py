@@ -137,27 +137,6 @@ class CellFamily:
             self.area_mm2[strips.first : strips.first + strips.planes] -= removed
         return removed
 
-    def crossings(self, k: int, u_mm: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
-        """Ends of the material on lines u = const of a plane, as `SliceStore.crossings` gives them."""
-        self.ensure(k, k + 1)
-        offsets = np.zeros(len(u_mm) + 1, dtype=np.int64)
-        room = 64 + 8 * len(u_mm)
-        while True:
-            out = np.empty(room)
-            written = kernels.all_crossings(
-                u_mm,
-                self.base[k],
-                self.grid,
-                self.columns,
-                self.tiles,
-                *(self.state, self.start, self.size, self.pool),
-                offsets,
-                out,
-            )
-            if written >= 0:
-                return offsets, out[:written]
-            room *= 4
-
     def line_ends(
         self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> lines.LineEnds:

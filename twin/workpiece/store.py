@@ -51,17 +51,6 @@ class SliceStore(Protocol):
     def region(self, axis: int, k: int) -> Region:
         """Material on one plane as rings: outer ones counter-clockwise in (u, v), holes clockwise."""
 
-    def crossings(self, axis: int, k: int, u_mm: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
-        """Where the lines u = const cross the boundary of one slice.
-
-        Args:
-            u_mm: shape (n,), increasing.
-
-        Returns:
-            offsets, shape (n + 1,), and v values: line ``i`` has material in [v[offsets[i]], v[offsets[i] + 1]],
-            [v[offsets[i] + 2], ...], increasing; an even number of values for each line.
-        """
-
     def line_ends(
         self, axis: int, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> LineEnds:

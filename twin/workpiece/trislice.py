@@ -84,10 +84,6 @@ class TriSlices(ABC):
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
         """Make the planes inside a box ready to be asked for points."""
 
-    @abstractmethod
-    def crossings(self, axis: int, k: int, u_mm: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
-        """See `twin.workpiece.store.SliceStore.crossings`."""
-
     def area_mm2(self, axis: int, k: int) -> float:
         """Area of material on one plane."""
         return float(self.areas_mm2(axis)[k])
@@ -132,10 +128,6 @@ class CellSlices(TriSlices):
     def region(self, axis: int, k: int) -> Region:
         """See `TriSlices.region`."""
         return self._families[axis].region(k)
-
-    def crossings(self, axis: int, k: int, u_mm: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
-        """See `SliceStore.crossings`."""
-        return self._families[axis].crossings(k, u_mm)
 
     def line_ends(
         self, axis: int, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
@@ -209,21 +201,6 @@ class PolygonSlices(TriSlices):
     def region(self, axis: int, k: int) -> Region:
         """See `TriSlices.region`."""
         return clip.to_region(self._paths[axis][k])
-
-    def crossings(self, axis: int, k: int, u_mm: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
-        """See `SliceStore.crossings`: every line against every ring edge, half-open in u."""
-        rings = [np.array(p) / clip.UNITS_PER_MM for p in self._paths[axis][k]]
-        hits: list[FloatArray] = []
-        for u in u_mm:
-            values: list[float] = []
-            for a in rings:
-                b = np.roll(a, -1, axis=0)
-                crossed = (a[:, 0] <= u) != (b[:, 0] <= u)
-                p, q = a[crossed], b[crossed]
-                values.extend(p[:, 1] + (q[:, 1] - p[:, 1]) * (u - p[:, 0]) / (q[:, 0] - p[:, 0]))
-            hits.append(np.sort(np.array(values)))
-        offsets = np.concatenate(([0], np.cumsum([len(h) for h in hits])))
-        return offsets.astype(np.int64), np.concatenate(hits) if hits else np.zeros(0)
 
     def line_ends(
         self,

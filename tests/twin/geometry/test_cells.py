@@ -84,7 +84,7 @@ def test_thousands_of_cuts_agree_with_geos_and_pyclipper() -> None:
     ]
     assert np.array_equal(inside, shapely.contains_xy(truth, points[:, 0], points[:, 1]))
     lines = np.sort(rng.uniform(-1.0, 21.0, 300))
-    offsets, ends = family.crossings(0, lines)
+    offsets, ends, _ = family.line_ends(np.array([0]), 0, lines, (-1.0, 20.0))
     for u, first, last in zip(lines, offsets[:-1], offsets[1:], strict=True):
         along = ends[first:last]
         assert len(along) % 2 == 0

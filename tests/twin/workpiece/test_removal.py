@@ -52,7 +52,7 @@ def test_fast_and_reference_agree_on_every_slice_over_thousands_of_cuts() -> Non
                 quick.workpiece, plain.workpiece = fast, slow
 
 
-def test_stores_agree_on_points_rings_and_crossings() -> None:
+def test_stores_agree_on_points_rings_and_lines() -> None:
     slices = box_slices((0.0, 0.0, -4.0), (9.0, 8.0, 0.0), 0.5)
     tolerance = Tolerance.for_pitch(0.5)
     stores = CellSlices(slices), PolygonSlices(slices)
@@ -67,7 +67,7 @@ def test_stores_agree_on_points_rings_and_crossings() -> None:
         assert np.array_equal(stores[0].contains(points, axis), stores[1].contains(points, axis))
         for k in range(0, stores[0].count(axis), 3):
             assert stores[0].region(axis, k).area_mm2 == pytest.approx(stores[1].region(axis, k).area_mm2, abs=1e-4)
-            fast, slow = (store.crossings(axis, k, lines) for store in stores)
+            fast, slow = (store.line_ends(axis, np.array([k]), 0, lines, (-9.0, 9.0))[:2] for store in stores)
             lengths = [[np.sum(v[a + 1 : b : 2] - v[a:b:2]) for a, b in pairwise(o)] for o, v in (fast, slow)]
             assert lengths[0] == pytest.approx(lengths[1], abs=1e-4)
     for enough in (1, 2):
