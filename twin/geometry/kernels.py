@@ -228,6 +228,35 @@ def _emit_odd(
 
 
 @njit(cache=True, nogil=True)
+def _side_of(
+    segment: FloatArray, column: int, a: float, b: float, va: float, vb: float, toggles: FloatArray, n: int
+) -> tuple[bool, bool, float, int]:
+    """On which side of lo (column 2) or hi (column 4) an edge runs from (a, va) to (b, vb), inside one segment.
+
+    Where it runs above, its ends are noted as toggles.
+
+    Returns:
+        Whether it is above at a and at b, where it changes side (b if it does not), and the number of toggles.
+    """
+    s0, s1 = segment[0], segment[1]
+    da = va - _line(a, s0, segment[column], s1, segment[column + 1])
+    db = vb - _line(b, s0, segment[column], s1, segment[column + 1])
+    above_a, above_b = da > 0.0, db > 0.0
+    u = b
+    if above_a:
+        toggles[n] = a
+        n += 1
+    if above_a != above_b:
+        u = _crossing(a, b, da, db)
+        toggles[n] = u
+        n += 1
+    if above_b:
+        toggles[n] = b
+        n += 1
+    return above_a, above_b, u, n
+
+
+@njit(cache=True, nogil=True)
 def _cut_edges(
     edges: FloatArray,
     begin: int,
@@ -264,45 +293,12 @@ def _cut_edges(
             end = b
             va = _line(a, u0, v0, u1, v1)
             vb = _line(b, u0, v0, u1, v1)
-            s0, s1 = segments[m, 0], segments[m, 1]
-            above_a = True
-            above_b = True
-            u_lo = b
+            above_a, above_b, u_lo = True, True, b
             if segments[m, 6] > 0.0:
-                da = va - _line(a, s0, segments[m, 2], s1, segments[m, 3])
-                db = vb - _line(b, s0, segments[m, 2], s1, segments[m, 3])
-                above_a = da > 0.0
-                above_b = db > 0.0
-                if above_a != above_b:
-                    u_lo = _crossing(a, b, da, db)
-                if above_a:
-                    toggles_lo[n_lo] = a
-                    n_lo += 1
-                if above_a != above_b:
-                    toggles_lo[n_lo] = u_lo
-                    n_lo += 1
-                if above_b:
-                    toggles_lo[n_lo] = b
-                    n_lo += 1
-            over_a = False
-            over_b = False
-            u_hi = b
+                above_a, above_b, u_lo, n_lo = _side_of(segments[m], 2, a, b, va, vb, toggles_lo, n_lo)
+            over_a, over_b, u_hi = False, False, b
             if segments[m, 7] > 0.0:
-                da = va - _line(a, s0, segments[m, 4], s1, segments[m, 5])
-                db = vb - _line(b, s0, segments[m, 4], s1, segments[m, 5])
-                over_a = da > 0.0
-                over_b = db > 0.0
-                if over_a != over_b:
-                    u_hi = _crossing(a, b, da, db)
-                if over_a:
-                    toggles_hi[n_hi] = a
-                    n_hi += 1
-                if over_a != over_b:
-                    toggles_hi[n_hi] = u_hi
-                    n_hi += 1
-                if over_b:
-                    toggles_hi[n_hi] = b
-                    n_hi += 1
+                over_a, over_b, u_hi, n_hi = _side_of(segments[m], 4, a, b, va, vb, toggles_hi, n_hi)
             above = above_a
             over = over_a
             keep = over or not above
