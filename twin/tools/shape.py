@@ -23,9 +23,6 @@ from twin.errors import ToolError
 
 ToolKind: TypeAlias = Literal["flat", "ball", "bull", "taper"]
 
-#: Meaning of the entries of `ToolShape.parameters`, the form that kernels take.
-DISC, CORNER, TAN_TAPER, ARC_RADIUS, ARC_HEIGHT, HEIGHT, MAX_RADIUS = range(7)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolShape:

@@ -55,11 +55,6 @@ class Lattice:
         """Number of nodes along x, y and z."""
         return len(self.nodes_mm[0]), len(self.nodes_mm[1]), len(self.nodes_mm[2])
 
-    @property
-    def size_mm(self) -> float:
-        """Largest distance of two neighbouring nodes."""
-        return max(float(np.diff(n).max()) for n in self.nodes_mm)
-
 
 def _axis(store: SliceStore, axis: int, pitch_mm: float) -> tuple[FloatArray, NDArray[np.int64]]:
     """Nodes along one axis and the planes that they lie on."""
