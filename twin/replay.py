@@ -90,6 +90,7 @@ class Replay:
         return moves_from_nc(
             events,
             origin_mm=np.array(self.job.machine.offsets[self.job.stock.wcs]),
+            start_mm=self._settings.start_mm,
             tool_length_mm={t.number: t.length_mm for t in self.job.tools},
             rapid_mm_min=self.job.machine.rapid_mm_min,
         )

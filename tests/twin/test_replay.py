@@ -250,6 +250,14 @@ def test_a_start_inside_the_stock_is_an_error(tmp_path: Path) -> None:
         list(replay)
 
 
+def test_a_dwell_before_the_first_motion_is_at_the_start_not_in_the_stock(tmp_path: Path) -> None:
+    program = HEAD + "G4 X0.5\nG0 X-6 Y10 Z25\nM30\n"
+    records = run(make(tmp_path, program, stock={"box_mm": {"min": [-5, -5, 0], "max": [30, 20, 16]}}))
+    dwell = steps_of(records)[0]
+    assert dwell.duration_s == 0.5
+    assert dwell.start_mm == pytest.approx(steps_of(records)[1].start_mm)
+
+
 def test_tool_shapes_that_cannot_be_name_the_tool(tmp_path: Path) -> None:
     with pytest.raises(JobError, match="flute"):
         make(tmp_path, SLOT, tools=[{**BALL, "flute_length_mm": 1.0}])

@@ -11,6 +11,7 @@ from gcode.events import (
     Dwell,
     Event,
     LinearMotion,
+    Motion,
     MotionState,
     Point,
 )
@@ -22,6 +23,7 @@ def moves_from_nc(
     events: Iterable[Event],
     *,
     origin_mm: FloatArray,
+    start_mm: Point,
     tool_length_mm: Mapping[int, float],
     rapid_mm_min: float,
 ) -> Iterator[Move | Event]:
@@ -33,25 +35,25 @@ def moves_from_nc(
 
     Args:
         origin_mm: origin of the workpiece frame in machine coordinates, shape (3,).
+        start_mm: gauge point when the program starts, machine coordinates; where a dwell before any motion is.
         tool_length_mm: gauge length of each tool by number; tools that are missing count as 0.
         rapid_mm_min: speed of positioning along the path.
     """
-    last: FloatArray | None = None
-    state = MotionState()
+    gauge = np.array(start_mm) - origin_mm
     for event in events:
         if isinstance(event, LinearMotion | ArcMotion):
             move = _move(event, origin_mm, tool_length_mm, rapid_mm_min)
-            last, state = move.end_mm, event.state
+            gauge = move.end_mm + _up(tool_length_mm.get(move.tool, 0.0))
             yield move
         elif isinstance(event, Dwell):
-            here = last if last is not None else np.zeros(3)
+            tip = gauge - _up(tool_length_mm.get(event.state.tool, 0.0))
             yield Move(
-                start_mm=here,
-                end_mm=here,
+                start_mm=tip,
+                end_mm=tip,
                 duration_s=event.seconds,
                 feed_mm_min=0.0,
                 spindle_rpm=_signed_rpm(event.state),
-                tool=state.tool if last is not None else event.state.tool,
+                tool=event.state.tool,
                 rapid=False,
                 nc_line=event.place.line,
             )
@@ -59,15 +61,17 @@ def moves_from_nc(
             yield event
 
 
+def _up(length_mm: float) -> FloatArray:
+    return np.array([0.0, 0.0, length_mm])
+
+
 def _signed_rpm(state: MotionState) -> float:
     return state.spindle_rpm * state.spindle_direction
 
 
-def _move(
-    event: LinearMotion | ArcMotion, origin: FloatArray, lengths: Mapping[int, float], rapid_mm_min: float
-) -> Move:
+def _move(event: Motion, origin: FloatArray, lengths: Mapping[int, float], rapid_mm_min: float) -> Move:
     state = event.state
-    lift = np.array([0.0, 0.0, state.length_offset_mm - lengths.get(state.tool, 0.0)]) - origin
+    lift = _up(state.length_offset_mm - lengths.get(state.tool, 0.0)) - origin
 
     def tip(point: Point) -> FloatArray:
         return np.array(point) + lift

@@ -74,6 +74,7 @@ def moves(*events: LinearMotion | ArcMotion | Dwell | ToolChange) -> list[object
         moves_from_nc(
             events,
             origin_mm=np.array([100.0, 50.0, -200.0]),
+            start_mm=(130.0, 60.0, 0.0),
             tool_length_mm={1: 80.0},
             rapid_mm_min=30000.0,
         )
@@ -111,3 +112,14 @@ def test_rapids_take_the_rapid_rate_and_dwells_their_time() -> None:
     assert second.duration_s == 2.5
     assert np.array_equal(second.start_mm, first.end_mm)
     assert isinstance(third, ToolChange)
+
+
+def test_a_dwell_is_where_the_tool_is_also_before_any_motion_and_after_a_tool_change() -> None:
+    with_tool, without = MotionState(tool=1), MotionState(tool=0)
+    rapid = LinearMotion(
+        place=PLACE, state=with_tool, start_mm=(0.0, 0.0, 0.0), end_mm=(100.0, 50.0, -50.0), rapid=True, feed_mm_min=0.0
+    )
+    dwells = [Dwell(place=PLACE, state=state, seconds=1.0) for state in (without, with_tool)]
+    first, second, _, third, fourth = moves(*dwells, rapid, *dwells)
+    tips = [m.start_mm.tolist() for m in (first, second, third, fourth) if isinstance(m, Move)]
+    assert tips == [[30.0, 10.0, 200.0], [30.0, 10.0, 120.0], [0.0, 0.0, 150.0], [0.0, 0.0, 70.0]]
