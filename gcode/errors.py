@@ -6,6 +6,24 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Call:
+    """One level of the call stack.
+
+    Attributes:
+        program: what was called, e.g. ``O1000`` or ``o<pocket>``.
+        file: file of the calling block.
+        line: line of the calling block.
+    """
+
+    program: str
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.program} called at {self.file}:{self.line}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Place:
     """Where in an NC program something stands.
 
@@ -14,12 +32,14 @@ class Place:
         line: line in the file, counted from 1.
         column: column in the line, counted from 1; 1 where a whole block is meant.
         text: the block as written, without its line end.
+        calls: the calls that led here, the outermost first; empty in the main program.
     """
 
     file: str
     line: int
     column: int = 1
     text: str = ""
+    calls: tuple[Call, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}:{self.column}"

@@ -15,6 +15,12 @@ from gcode.errors import Place
 
 Point: TypeAlias = tuple[float, float, float]
 Plane: TypeAlias = Literal[17, 18, 19]
+FeedMode: TypeAlias = Literal["per-minute", "inverse-time", "per-revolution"]
+Side: TypeAlias = Literal["off", "left", "right"]
+#: Positions of the axes A, B, C (degrees) and U, V, W (mm) in machine coordinates.
+Extra: TypeAlias = tuple[float, float, float, float, float, float]
+
+NO_EXTRA: Extra = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 #: Coordinate indices (first, second, normal) of each plane; the order makes a right-handed frame.
 PLANE_AXES: dict[int, tuple[int, int, int]] = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
@@ -28,25 +34,38 @@ class MotionState:
         tool: number of the tool in the spindle (M6 done), 0 for none.
         spindle_rpm: commanded speed, >= 0; it turns only where ``spindle_direction`` is not 0.
         spindle_direction: +1 for M3 (clockwise seen from above the tool), -1 for M4, 0 stopped.
-        length_offset_mm: active tool length offset (G43/G44, signed), 0 with G49.
+        length_offset_mm: active tool length offset along z (G43/G44, signed), 0 with G49.
+        tool_offset_xy_mm: the active tool's offset in x and y, which only some controls have.
         wcs: name of the active work offset, e.g. ``G54``.
         plane: active plane, 17, 18 or 19.
+        feed_mode: what F means: ``per-minute`` (G94), ``inverse-time`` (G93) or ``per-revolution`` (G95).
+        length_number: number of the active length offset (H), None without one.
+        radius_number: number of the active cutter compensation (D), None without one.
+        compensation: ``off`` (G40), ``left`` (G41) or ``right`` (G42).
     """
 
     tool: int = 0
     spindle_rpm: float = 0.0
     spindle_direction: Literal[-1, 0, 1] = 0
     length_offset_mm: float = 0.0
+    tool_offset_xy_mm: tuple[float, float] = (0.0, 0.0)
     wcs: str = "G54"
     plane: Plane = 17
+    feed_mode: FeedMode = "per-minute"
+    length_number: int | None = None
+    radius_number: int | None = None
+    compensation: Side = "off"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinearMotion:
-    """A straight motion (G0, G1, or a leg of G28/G53).
+    """A straight motion (G0, G1, a leg of G28/G53, a stroke of a canned cycle). Its length may be 0.
 
     Attributes:
         rapid: True for a positioning motion at the machine's rapid rate; then ``feed_mm_min`` is 0.
+        feed_mm_min: speed of the controlled point along the path; with G95 that at the commanded spindle speed.
+        tapping: True where the feed follows the spindle's angle (tapping in or out of a thread).
+        extra: where the further axes stand at the motion's end.
     """
 
     place: Place
@@ -55,6 +74,8 @@ class LinearMotion:
     end_mm: Point
     rapid: bool
     feed_mm_min: float
+    tapping: bool = False
+    extra: Extra = NO_EXTRA
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,6 +90,7 @@ class ArcMotion:
             than 0 and at most one full turn, -1 clockwise, +2 one full turn more, and so on. Start and end at the
             same place in the plane make a full circle.
         feed_mm_min: feed along the (helical) path.
+        extra: where the further axes stand at the motion's end.
     """
 
     place: Place
@@ -79,6 +101,7 @@ class ArcMotion:
     plane: Plane
     turns: int
     feed_mm_min: float
+    extra: Extra = NO_EXTRA
 
     @property
     def sweep_rad(self) -> float:
@@ -130,11 +153,16 @@ class CoolantChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramStop:
-    """M0, M1 (``optional``), or the end by M2/M30/% (``end``). The replay goes on after a stop."""
+    """M0, M1 (``optional``), or the end by M2/M30/% (``end``). The replay goes on after a stop.
+
+    Attributes:
+        message: what the program shows with the stop, if anything.
+    """
 
     place: Place
     optional: bool
     end: bool
+    message: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

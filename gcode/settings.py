@@ -1,10 +1,11 @@
-"""What the interpreter must be told about the machine and the setup: offsets, reference point, start-up units."""
+"""What the interpreter must be told about the machine and the setup: offsets, tools, reference points, parameters."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
@@ -14,47 +15,133 @@ _ORIGIN: Point = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ToolOffset:
+    """One row of the tool offset table. Lengths are mm.
+
+    Attributes:
+        length_mm: geometry of the length offset (H), along z.
+        length_wear_mm: wear, added to it.
+        radius_mm: geometry of the cutter radius (D).
+        radius_wear_mm: wear, added to it.
+        x_mm: offset in x, which only some controls have.
+        y_mm: offset in y.
+        pocket: pocket of the magazine, None where it has none.
+        comment: description.
+
+    Raises:
+        ValueError: for a length that is not finite, naming it.
+    """
+
+    length_mm: float = 0.0
+    length_wear_mm: float = 0.0
+    radius_mm: float = 0.0
+    radius_wear_mm: float = 0.0
+    x_mm: float = 0.0
+    y_mm: float = 0.0
+    pocket: int | None = None
+    comment: str = ""
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            if entry.name.endswith("_mm"):
+                object.__setattr__(self, entry.name, _length(entry.name, getattr(self, entry.name)))
+
+    @property
+    def whole_length_mm(self) -> float:
+        """Length offset that H activates: geometry and wear."""
+        return self.length_mm + self.length_wear_mm
+
+    @property
+    def whole_radius_mm(self) -> float:
+        """Radius that D activates: geometry and wear."""
+        return self.radius_mm + self.radius_wear_mm
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """How much a program may do before it is refused as one that runs away.
+
+    Attributes:
+        blocks: blocks executed in all.
+        nesting: levels of calls and macros.
+        errors: mistakes that a check collects before it stops.
+    """
+
+    blocks: int = 20_000_000
+    nesting: int = 64
+    errors: int = 200
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class MachineSettings:
     """A machine as it stands when the program starts. All lengths are mm, in machine coordinates.
 
     Attributes:
-        offsets: work offsets by name (``G54``): the place of each work zero. Only those given may be used.
+        offsets: work offsets by name (``G54``, ``G59.1``, ``G54.1 P7``): the place of each work zero. Only those
+            given, and those that the program sets by G10, may be used.
+        rotations_deg: rotation about z of each work offset, counter-clockwise; those missing are 0.
+        external_offset_mm: added to every work offset (the external or common offset).
         home_mm: gauge point at the reference point that G28 goes to.
+        reference_points_mm: gauge points of the further reference points (G30 P2, P3, P4) by number.
         start_mm: gauge point when the program starts.
-        length_offsets_mm: tool length offsets by H number; H0 is always 0 in controls that count offsets from 1.
+        tools: tool offset table: rows by number, which H, D or T name.
         tool: number of the tool in the spindle when the program starts, 0 for none.
+        variables: common variables or persistent parameters by number, as they stand at the start.
+        search_path: folders where subprogram files are looked for, after that of the program itself.
         arc_tolerance_mm: how far the radii at an arc's two ends may differ; None for the dialect's own rule.
         arc_centres: whether I, J, K at start-up are measured from the arc's start or are coordinates.
         block_delete: True where the block delete switch is on.
+        optional_stop: True where the optional stop switch is on; it is only told in the `ProgramStop` event.
         units: what lengths and feeds mean until the program says G20 or G21.
+        decimal_point: ``calculator``: X100 is 100 mm; ``increment``: a number without a point counts the least input
+            increment (0.001 mm or 0.0001 inch), as FANUC's parameter 3401 bit 0 decides.
+        compensation_startup: type of start-up and cancel of FANUC's cutter compensation (parameter 5003 bits 0, 1).
+        limits: see `Limits`.
 
     Raises:
         ValueError: for a value that is not finite, or out of its range, naming it.
     """
 
     offsets: Mapping[str, Point] = field(default_factory=lambda: {"G54": _ORIGIN})
+    rotations_deg: Mapping[str, float] = field(default_factory=dict)
+    external_offset_mm: Point = _ORIGIN
     home_mm: Point = _ORIGIN
+    reference_points_mm: Mapping[int, Point] = field(default_factory=dict)
     start_mm: Point = _ORIGIN
-    length_offsets_mm: Mapping[int, float] = field(default_factory=dict)
+    tools: Mapping[int, ToolOffset] = field(default_factory=dict)
     tool: int = 0
+    variables: Mapping[int, float] = field(default_factory=dict)
+    search_path: tuple[Path, ...] = ()
     arc_tolerance_mm: float | None = None
     arc_centres: Literal["incremental", "absolute"] = "incremental"
     block_delete: bool = False
+    optional_stop: bool = False
     units: Literal["mm", "inch"] = "mm"
+    decimal_point: Literal["calculator", "increment"] = "calculator"
+    compensation_startup: Literal["A", "B"] = "A"
+    limits: Limits = Limits()
 
     def __post_init__(self) -> None:
-        offsets = {name: _point(f"offsets[{name!r}]", value) for name, value in self.offsets.items()}
-        lengths = {number: _length(f"length_offsets_mm[{number}]", v) for number, v in self.length_offsets_mm.items()}
-        object.__setattr__(self, "offsets", MappingProxyType(offsets))
-        object.__setattr__(self, "length_offsets_mm", MappingProxyType(lengths))
-        object.__setattr__(self, "home_mm", _point("home_mm", self.home_mm))
-        object.__setattr__(self, "start_mm", _point("start_mm", self.start_mm))
+        self._freeze("offsets", {name: _point(f"offsets[{name!r}]", value) for name, value in self.offsets.items()})
+        self._freeze("rotations_deg", {n: _length(f"rotations_deg[{n!r}]", v) for n, v in self.rotations_deg.items()})
+        points = {n: _point(f"reference_points_mm[{n}]", v) for n, v in self.reference_points_mm.items()}
+        self._freeze("reference_points_mm", points)
+        self._freeze("tools", dict(self.tools))
+        self._freeze("variables", {n: _length(f"variables[{n}]", v) for n, v in self.variables.items()})
+        for name in ("external_offset_mm", "home_mm", "start_mm"):
+            object.__setattr__(self, name, _point(name, getattr(self, name)))
+        object.__setattr__(self, "search_path", tuple(Path(folder) for folder in self.search_path))
         if self.tool < 0:
             raise ValueError(f"tool must be 0 or more, got {self.tool}")
         if self.arc_tolerance_mm is not None and _length("arc_tolerance_mm", self.arc_tolerance_mm) < 0.0:
             raise ValueError(f"arc_tolerance_mm must be 0 or more, got {self.arc_tolerance_mm}")
         _choice("arc_centres", self.arc_centres, ("incremental", "absolute"))
         _choice("units", self.units, ("mm", "inch"))
+        _choice("decimal_point", self.decimal_point, ("calculator", "increment"))
+        _choice("compensation_startup", self.compensation_startup, ("A", "B"))
+
+    def _freeze(self, name: str, values: Mapping[object, object]) -> None:
+        object.__setattr__(self, name, MappingProxyType(values))
 
 
 def _length(name: str, value: float) -> float:
