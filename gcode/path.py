@@ -1,0 +1,123 @@
+"""Paths of motions: length, extreme coordinates, and points within a tolerance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcode.events import PLANE_AXES, ArcMotion, Motion, Point
+
+#: Most chords that one arc is stepped into.
+MOST_CHORDS = 100_000
+
+
+@dataclass(frozen=True, slots=True)
+class _Spiral:
+    """An arc as functions of the angle swept: radius and height go in proportion to it.
+
+    Attributes:
+        start_rad: angle of the start about the centre.
+        sweep_rad: signed angle swept.
+        start_mm: radius at the start.
+        end_mm: radius at the end.
+        rise_mm: way along the plane's normal.
+    """
+
+    start_rad: float
+    sweep_rad: float
+    start_mm: float
+    end_mm: float
+    rise_mm: float
+
+    @property
+    def growth(self) -> float:
+        """Change of the radius with the angle, mm/rad."""
+        return (self.end_mm - self.start_mm) / self.sweep_rad
+
+    def radius_mm(self, swept_rad: float) -> float:
+        """Radius where an angle has been swept."""
+        return self.start_mm + self.growth * swept_rad
+
+    def coordinate(self, swept_rad: float, phase_rad: float) -> float:
+        """Coordinate from the centre along the direction at an angle in the plane, mm."""
+        return self.radius_mm(swept_rad) * math.cos(self.start_rad + swept_rad - phase_rad)
+
+
+def _spiral(arc: ArcMotion) -> _Spiral:
+    i, j, k = PLANE_AXES[arc.plane]
+    start = (arc.start_mm[i] - arc.centre_mm[i], arc.start_mm[j] - arc.centre_mm[j])
+    end = (arc.end_mm[i] - arc.centre_mm[i], arc.end_mm[j] - arc.centre_mm[j])
+    return _Spiral(
+        start_rad=math.atan2(start[1], start[0]),
+        sweep_rad=arc.sweep_rad,
+        start_mm=math.hypot(*start),
+        end_mm=math.hypot(*end),
+        rise_mm=arc.end_mm[k] - arc.start_mm[k],
+    )
+
+
+def length_mm(motion: Motion) -> float:
+    """Length of a motion's path, helices and arcs of changing radius included."""
+    if not isinstance(motion, ArcMotion):
+        return math.dist(motion.start_mm, motion.end_mm)
+    spiral = _spiral(motion)
+    along = math.hypot(spiral.growth, spiral.rise_mm / spiral.sweep_rad)
+    radii = (spiral.start_mm, (spiral.start_mm + spiral.end_mm) / 2.0, spiral.end_mm)
+    first, middle, last = (math.hypot(radius, along) for radius in radii)
+    return abs(spiral.sweep_rad) * (first + 4.0 * middle + last) / 6.0
+
+
+def extremes_mm(motion: Motion) -> tuple[Point, Point]:
+    """Least and largest coordinates that a motion comes to: of an arc those of its path, not of its ends."""
+    low = [min(a, b) for a, b in zip(motion.start_mm, motion.end_mm, strict=True)]
+    high = [max(a, b) for a, b in zip(motion.start_mm, motion.end_mm, strict=True)]
+    if isinstance(motion, ArcMotion):
+        spiral = _spiral(motion)
+        for axis, phase in zip(PLANE_AXES[motion.plane][:2], (0.0, math.pi / 2.0), strict=True):
+            for value in _turning_points(spiral, phase):
+                low[axis] = min(low[axis], motion.centre_mm[axis] + value)
+                high[axis] = max(high[axis], motion.centre_mm[axis] + value)
+    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+
+def _turning_points(spiral: _Spiral, phase_rad: float) -> list[float]:
+    """Coordinates along one direction where the path turns back: at most the first and last two of each side."""
+    least, most = sorted((0.0, spiral.sweep_rad))
+    first = math.ceil((spiral.start_rad + least - phase_rad) / math.pi)
+    last = math.floor((spiral.start_rad + most - phase_rad) / math.pi)
+    found = []
+    for half_turn in {*range(first, min(first + 2, last + 1)), *range(max(first, last - 1), last + 1)}:
+        swept = half_turn * math.pi + phase_rad - spiral.start_rad
+        lead = math.atan2(spiral.growth, max(spiral.radius_mm(swept), 1e-12))
+        found.append(spiral.coordinate(min(max(swept + lead, least), most), phase_rad))
+    return found
+
+
+def points_mm(motion: Motion, tolerance_mm: float) -> NDArray[np.float64]:
+    """Points along a motion, both ends included.
+
+    Args:
+        tolerance_mm: how far the chords between them may lie off an arc, > 0.
+
+    Returns:
+        One row of x, y, z a point; the first and last are the motion's ends to the last digit.
+    """
+    if not isinstance(motion, ArcMotion):
+        return np.array((motion.start_mm, motion.end_mm))
+    spiral = _spiral(motion)
+    largest = max(spiral.start_mm, spiral.end_mm, 1e-9)
+    step = 2.0 * math.acos(max(1.0 - tolerance_mm / largest, math.cos(math.pi / 4.0)))
+    count = min(max(math.ceil(abs(spiral.sweep_rad) / step), 1), MOST_CHORDS)
+    parts = np.linspace(0.0, 1.0, count + 1)
+    angles = spiral.start_rad + spiral.sweep_rad * parts
+    radii = spiral.start_mm + (spiral.end_mm - spiral.start_mm) * parts
+    i, j, k = PLANE_AXES[motion.plane]
+    made = np.empty((count + 1, 3))
+    made[:, i] = motion.centre_mm[i] + radii * np.cos(angles)
+    made[:, j] = motion.centre_mm[j] + radii * np.sin(angles)
+    made[:, k] = motion.start_mm[k] + spiral.rise_mm * parts
+    made[0], made[-1] = motion.start_mm, motion.end_mm
+    return made
