@@ -1,0 +1,162 @@
+"""Canned cycles of a control as data: what each does in the hole, which words it takes, how the words are read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from types import MappingProxyType
+from typing import Literal
+
+
+class Act(Enum):
+    """One thing a cycle does once the tool stands over the hole; ``clear`` is the level it returns to."""
+
+    FEED_BOTTOM = auto()
+    FEED_R = auto()
+    FEED_CLEAR = auto()
+    FEED_TOP = auto()
+    RAPID_R = auto()
+    RAPID_BOTTOM = auto()
+    RAPID_CLEAR = auto()
+    #: Pecks to the bottom, each with a retraction out of the hole.
+    PECK = auto()
+    #: Pecks to the bottom, each with a small retraction that breaks the chip.
+    CHIP_BREAK = auto()
+    #: Off the hole's axis, at the level where the tool is, and back.
+    SHIFT = auto()
+    UNSHIFT = auto()
+    DWELL = auto()
+    STOP = auto()
+    RESTART = auto()
+    ORIENT = auto()
+    OPERATOR = auto()
+    #: The spindle turns the tap in (rigid tapping starts it), then out, then as it did before the cycle.
+    TAP_START = auto()
+    TAP_REVERSE = auto()
+    TAP_END = auto()
+    TAP_BOTTOM = auto()
+    TAP_R = auto()
+    TAP_CLEAR = auto()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cycle:
+    """One canned cycle of a control.
+
+    Attributes:
+        code: canonical name, e.g. ``G83``.
+        meaning: what it is, in words, for messages and reference tables.
+        acts: what it does in the hole, in this order.
+        takes: letters of words of its own, besides the axes, R and the repeat.
+        needs: those of them that must be given, now or by an earlier block.
+        inherits: those that are taken from any cycle before, also from one of another code or mode.
+        shift: it moves off the hole's axis, by Q or by I, J, K.
+        approach: the tool is brought to R before the acts.
+        returns_to_initial: it always returns to the initial level, whatever G98 and G99 say.
+        repeats: it takes the repeat word.
+        forward: direction in which the spindle turns a tap in, 0 where it is no tapping cycle.
+        spindle: directions in which the spindle may turn when it starts.
+        unsupported: words that are refused by name, with what they would ask for.
+    """
+
+    code: str
+    meaning: str
+    acts: tuple[Act, ...]
+    takes: str = ""
+    needs: str = ""
+    inherits: str = ""
+    shift: bool = False
+    approach: bool = True
+    returns_to_initial: bool = False
+    repeats: bool = True
+    forward: int = 0
+    spindle: tuple[int, ...] = (-1, 0, 1)
+    unsupported: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def pecks(self) -> bool:
+        """True where it goes down in pecks."""
+        return Act.PECK in self.acts or Act.CHIP_BREAK in self.acts
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DwellUnit:
+    """How P is read.
+
+    Attributes:
+        seconds: length of one unit of P.
+        whole: P must be a whole number.
+        pointed_seconds: length of one unit of a P that is written with a decimal point; None where that is the same.
+    """
+
+    seconds: float
+    whole: bool = False
+    pointed_seconds: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CycleRules:
+    """Canned cycles of a control. Lengths are mm.
+
+    Attributes:
+        name: the control, for messages.
+        cycles: its cycles by code.
+        absent: codes of the family that are no drilling cycle of this control, with what they are.
+        repeat_letters: letters of the word that says how often a block is repeated.
+        stores_zero_repeats: a repeat of 0 stores the words and drills nothing; else it is refused.
+        memory: words hold for all cycles of the ``mode``, until it is left, or only for blocks of the same ``code``.
+        levels_keep_mode: R and the bottom stay absolute or incremental as they were given; else the distance mode
+            of the present block decides how a number given before is read.
+        sticky_in_program_unit: numbers given before are kept in the program's unit, and a change of it changes them.
+        needs_r: R must be given; else the initial level is R where it is not.
+        needs_axis: a cycle in a block without axis words is refused; else a block without axis words and R drills
+            nothing and stores nothing.
+        refuses_r_below_bottom: R must not lie below the bottom; else such a hole is drilled upwards.
+        ignores_sign_of_q: a negative Q is taken as its size; else it is refused.
+        stored: letters that a cycle keeps for others though it does not use them; all other unused ones are refused.
+        lift_first: a tool below R goes up to it before it moves in the plane, from the second hole of a block on
+            the tool is taken to be at the level of return, and the control goes on from there whatever was moved.
+        empty_moves: motions to where the tool already is are commanded too.
+        dwell: how P is read.
+        retract_mm: how far a chip-breaking peck (G73) goes back.
+        reentry_mm: how far above the last depth the rapid motion of a peck drilling cycle (G83) ends.
+        reentry_within_r: neither goes beyond R.
+        above_r_mm: how far above R a peck is cleared.
+        peck_tolerance_mm: a last peck as short as this is none of its own.
+        shift_direction: direction of the shift by Q along the plane's first and second axis.
+        always_rigid: tapping is rigid without a word that says so.
+        restart: direction in which a cycle that stopped the spindle starts it again; None for the one before.
+        tap_order: by the letter of the plane's normal, which of (first, second, normal) the control puts into each of
+            the three in the strokes of a tap; planes that are not named keep the order.
+    """
+
+    name: str
+    cycles: Mapping[str, Cycle]
+    absent: Mapping[str, str]
+    repeat_letters: str
+    stores_zero_repeats: bool
+    memory: Literal["mode", "code"]
+    levels_keep_mode: bool
+    sticky_in_program_unit: bool
+    needs_r: bool
+    needs_axis: bool
+    refuses_r_below_bottom: bool
+    ignores_sign_of_q: bool
+    stored: str
+    lift_first: bool
+    empty_moves: bool
+    dwell: DwellUnit
+    retract_mm: float
+    reentry_mm: float
+    reentry_within_r: bool
+    above_r_mm: float = 0.0
+    peck_tolerance_mm: float = 0.0
+    shift_direction: tuple[float, float] = (1.0, 0.0)
+    always_rigid: bool = False
+    restart: int | None = None
+    tap_order: Mapping[str, tuple[int, int, int]] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __post_init__(self) -> None:
+        for name in ("cycles", "absent", "tap_order"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
