@@ -2,13 +2,13 @@
 
 Usage, with ``PYTHONPATH=tests:.``::
 
-    python tests/support/rs274_suite.py FOLDER... [--quiet] [--only TEXT]
+    python tests/support/rs274_suite.py FOLDER... [--each] [--quiet] [--only TEXT]
     python tests/support/rs274_suite.py --random COUNT [--first SEED] [--snippets NAMES] [--mutate] [--keep FOLDER]
     python tests/support/rs274_suite.py --record
 
 A sub-folder of FOLDER is one case: its ``t.ngc``, ``test.ngc`` or only ``.ngc`` file is the program, others beside it
 are its subroutines, a ``.tbl`` its tool table and a ``.var`` its parameters (inches). Without sub-folders every
-``.ngc`` file of FOLDER is a program on its own.
+``.ngc`` file of FOLDER is a program on its own, and with ``--each`` every one in and below it.
 """
 
 from __future__ import annotations
@@ -41,10 +41,13 @@ SAME, REFUSED, STILL, DIFFERS, STRICT, LAX, CRASH = (
 )
 
 
-def cases(folder: Path) -> Iterator[tuple[str, Path]]:
+def cases(folder: Path, each: bool) -> Iterator[tuple[str, Path]]:
     """Names of the cases of a folder, and their programs."""
     if folder.is_file():
         yield folder.name, folder
+        return
+    if each:
+        yield from ((str(program.relative_to(folder)), program) for program in sorted(folder.rglob("*.ngc")))
         return
     inner = [sub for sub in sorted(folder.iterdir()) if sub.is_dir() and any(sub.glob("*.ngc"))]
     for sub in inner:
@@ -101,6 +104,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="*", type=Path)
     parser.add_argument("--only", default="", help="cases with this text in their name")
+    parser.add_argument("--each", action="store_true", help="every program in and below a folder on its own")
     parser.add_argument("--quiet", action="store_true", help="leave out the cases that agree")
     parser.add_argument("--random", type=int, default=0, metavar="COUNT", help="so many random programs")
     parser.add_argument("--first", type=int, default=0, metavar="SEED", help="seed of the first")
@@ -116,7 +120,7 @@ def main() -> int:
         record()
         return 0
     with tempfile.TemporaryDirectory() as made:
-        found = [case for folder in options.folders for case in cases(folder)]
+        found = [case for folder in options.folders for case in cases(folder, options.each)]
         return report(chain(found, random_cases(options, options.keep or Path(made))), options)
 
 
