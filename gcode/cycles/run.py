@@ -41,7 +41,7 @@ def run_cycle(rules: CycleRules, call: CycleInput) -> CycleOutput:
     check_needed(rules, cycle, call, words.data)
     _check_machine(rules, cycle, call)
     hole = hole_of(rules, cycle, call, words.data)
-    _check_length(rules, hole, words.repeats)
+    _check_length(rules, call, hole, words.repeats)
     tool = _tool(rules, cycle, call, hole)
     end = (_lifting if rules.lift_first else _direct)(tool, call, words.repeats)
     return CycleOutput(sticky=words.sticky, steps=tuple(tool.steps), position=end)
@@ -66,9 +66,9 @@ def _check_machine(rules: CycleRules, cycle: Cycle, call: CycleInput) -> None:
         raise CycleError("cycle-spindle", problem, f"it to turn {wanted}")
 
 
-def _check_length(rules: CycleRules, hole: Hole, repeats: int) -> None:
+def _check_length(rules: CycleRules, call: CycleInput, hole: Hole, repeats: int) -> None:
     if repeats * (3 * len(hole.depths) + 16) > MOST_STEPS:
-        letter = rules.repeat_letters[-1]
+        letter = next((letter for letter in rules.repeat_letters if letter in call.words), "Q")
         problem = f"{repeats} holes of {len(hole.depths) + 1} pecks each are more than one block may make"
         raise CycleError("cycle-repeat", problem, f"no more than {MOST_STEPS} steps", letter)
 
