@@ -43,12 +43,12 @@ class Segment:
     @property
     def direction_in(self) -> complex:
         """Unit tangent at the start; only for a segment that moves."""
-        return self._direction(self.start)
+        return self.direction_at(self.start)
 
     @property
     def direction_out(self) -> complex:
         """Unit tangent at the end."""
-        return self._direction(self.end)
+        return self.direction_at(self.end)
 
     @property
     def sweep_rad(self) -> float:
@@ -60,7 +60,8 @@ class Segment:
         """Whether it is a positioning motion."""
         return isinstance(self.motion, LinearMotion) and self.motion.rapid
 
-    def _direction(self, point: complex) -> complex:
+    def direction_at(self, point: complex) -> complex:
+        """Unit tangent at a point of it."""
         if self.centre is None:
             return unit(self.end - self.start)
         return unit(point - self.centre) * (1j if self.turns > 0 else -1j)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import itertools
 import json
 import math
 import os
@@ -152,7 +153,7 @@ def ours(motions: list[Motion], side: str, radius: float) -> list[Made] | GcodeE
         events.extend(compensation.end(comp)[0])
     except GcodeError as error:
         return error
-    for before, after in zip(events, events[1:], strict=False):
+    for before, after in itertools.pairwise(events):
         assert math.dist(before.end_mm, after.start_mm) < 1e-9
     return made_of(tuple(events))
 
