@@ -21,11 +21,9 @@ from types import MappingProxyType
 
 from gcode.errors import Place
 from gcode.events import Point
-from gcode.settings import MachineSettings
+from gcode.settings import NUMBERED_OFFSETS, MachineSettings
 from gcode.tables.text_file import MM_PER_UNIT, Unit, error_at, lines_of, number_at, read_text, token_at
 
-#: Coordinate systems in the order of parameter 5220, which counts from 1.
-SYSTEMS = (*(f"G{n}" for n in range(54, 60)), "G59.1", "G59.2", "G59.3")
 #: One more than the largest parameter.
 PARAMETERS_END = 5602
 
@@ -128,9 +126,9 @@ def _line(place: Place) -> tuple[int, float]:
 
 def _check_active(values: Mapping[int, float], places: Mapping[int, Place]) -> None:
     active = values.get(_ACTIVE, 1.0)
-    if active not in range(1, len(SYSTEMS) + 1):
+    if active not in range(1, len(NUMBERED_OFFSETS) + 1):
         problem = f"parameter {_ACTIVE}, the active coordinate system, is {active:g}"
-        raise error_at(places[_ACTIVE], 0, "parameter-system", problem, f"1 to {len(SYSTEMS)} (G54 to G59.3)")
+        raise error_at(places[_ACTIVE], 0, "parameter-system", problem, f"1 to {len(NUMBERED_OFFSETS)} (G54 to G59.3)")
 
 
 def _file(values: Mapping[int, float], unit_mm: float) -> ParameterFile:
@@ -138,14 +136,14 @@ def _file(values: Mapping[int, float], unit_mm: float) -> ParameterFile:
         x, y, z = (values.get(first + axis, 0.0) * unit_mm for axis in range(3))
         return (x, y, z)
 
-    firsts = {name: _FIRST_SYSTEM + _NEXT_SYSTEM * n for n, name in enumerate(SYSTEMS)}
+    firsts = {name: _FIRST_SYSTEM + _NEXT_SYSTEM * n for n, name in enumerate(NUMBERED_OFFSETS)}
     return ParameterFile(
         variables=MappingProxyType(dict(values)),
         offsets=MappingProxyType({name: point(first) for name, first in firsts.items()}),
         rotations_deg=MappingProxyType({n: values.get(first + _ROTATION, 0.0) for n, first in firsts.items()}),
         home_mm=point(_HOME),
         reference_points_mm=MappingProxyType({2: point(_SECOND_REFERENCE)}),
-        wcs=SYSTEMS[int(values.get(_ACTIVE, 1.0)) - 1],
+        wcs=NUMBERED_OFFSETS[int(values.get(_ACTIVE, 1.0)) - 1],
         g92_mm=point(_G92_HOLDS + 1),
         g92_holds=values.get(_G92_HOLDS, 0.0) != 0.0,
     )

@@ -25,13 +25,11 @@ from types import MappingProxyType
 from typing import Any
 
 from gcode.events import Point
-from gcode.settings import Limits, MachineSettings, ToolOffset
+from gcode.settings import ALL_OFFSETS, Limits, MachineSettings, ToolOffset
 from gcode.tables.document import Node, load_document
 from gcode.tables.text_file import read_text
 
-_OFFSET = re.compile(r"G5[4-9]|G59\.[123]|G54\.1 ?P([1-9]\d{0,2})")
-_OFFSETS = "G54 to G59, G59.1 to G59.3, or G54.1 P1 to P300"
-_LAST_ADDITIONAL = 300
+_ADDITIONAL = re.compile(r"(G54\.1)\s*(P\d+)")
 
 
 def read_settings(path: Path | str) -> MachineSettings:
@@ -79,10 +77,11 @@ def _tool(node: Node) -> ToolOffset:
 
 def _offset_name(key: str, node: Node) -> str:
     """A work offset's name as `MachineSettings.offsets` has it."""
-    found = _OFFSET.fullmatch(key.upper())
-    if found is None or (found[1] and int(found[1]) > _LAST_ADDITIONAL):
-        raise node.error(f"{key!r} is no work offset", _OFFSETS, at_key=True)
-    return f"G54.1 P{found[1]}" if found[1] else found.group()
+    name = _ADDITIONAL.sub(r"\1 \2", key.strip().upper())
+    if name not in ALL_OFFSETS:
+        expected = f"G54 to G59, G59.1 to G59.3, or {ALL_OFFSETS[-1].replace(' P', ' P1 to P')}"
+        raise node.error(f"{key!r} is no work offset", expected, at_key=True)
+    return name
 
 
 def _by_offset(node: Node, read: Callable[[Node], Any]) -> dict[str, Any]:

@@ -1,0 +1,5 @@
+"""``python -m gcode``."""
+
+from gcode.cli import main
+
+main()

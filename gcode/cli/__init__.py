@@ -1,0 +1,9 @@
+"""The command line: ``gcode check``, ``motions``, ``stats``, ``plot``.
+
+Results go to standard output, everything else to standard error. What is heavy is imported inside the commands, so
+that ``gcode --help`` answers at once.
+"""
+
+from gcode.cli.run import main, run
+
+__all__ = ["main", "run"]

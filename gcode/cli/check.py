@@ -1,0 +1,85 @@
+"""``gcode check``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from gcode.cli import exit_codes
+from gcode.cli.machine import (
+    BlockDeleteOption,
+    DialectName,
+    DialectOption,
+    ParametersOption,
+    SearchPathOption,
+    SettingsOption,
+    ToolTableOption,
+    UnitOption,
+    setup_of,
+)
+
+if TYPE_CHECKING:
+    from gcode.cli.findings import Findings
+
+
+def check(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Programs.", show_default=False)],
+    dialect: DialectOption = DialectName.FANUC,
+    tool_table: ToolTableOption = None,
+    parameters: ParametersOption = None,
+    settings: SettingsOption = None,
+    machine_units: UnitOption = None,
+    block_delete: BlockDeleteOption = False,
+    search_path: SearchPathOption = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object a diagnostic and line.")] = False,
+    notices: Annotated[
+        bool, typer.Option("--notices", help="List words that are understood and have no effect on motion.")
+    ] = False,
+) -> None:
+    """Find the mistakes of programs: as many as one run can tell, each with its place."""
+    from gcode.cli.findings import findings
+    from gcode.cli.say import fail, written
+
+    setup = setup_of(
+        dialect=dialect,
+        settings=settings,
+        tool_table=tool_table,
+        parameters=parameters,
+        machine_units=machine_units,
+        block_delete=block_delete,
+        search_path=search_path,
+    )
+    codes = {exit_codes.OK}
+    with written():
+        for file in files:
+            found = findings(file, setup)
+            if found.unreadable is not None:
+                fail(str(found.unreadable))
+                codes.add(exit_codes.USAGE)
+                continue
+            (_print_json if as_json else _print_text)(found, notices)
+            codes.add(exit_codes.MISTAKES if found.errors else exit_codes.OK)
+    raise typer.Exit(max(codes))
+
+
+def _print_text(found: Findings, notices: bool) -> None:
+    from gcode.cli.say import harmless
+    from gcode.cli.words import plural
+
+    for error in found.errors:
+        typer.echo(f"{harmless(error.underlined())}\n")
+    if notices:
+        for group in found.grouped():
+            typer.echo(harmless(group))
+    said = plural(len(found.errors), "mistake")
+    more = f", {plural(len(found.notices), 'notice')}" if found.notices else ""
+    typer.secho(f"{found.file}: {said}{more}", fg=typer.colors.RED if found.errors else typer.colors.GREEN)
+
+
+def _print_json(found: Findings, notices: bool) -> None:
+    import json
+
+    for made in found.objects(notices=notices):
+        typer.echo(json.dumps(made))

@@ -1,0 +1,129 @@
+"""The options that every command shares: which control the program is for, and what machine it stands before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, TypeVar
+
+import typer
+
+from gcode.cli.say import UnusableFileError
+from gcode.errors import GcodeError
+
+if TYPE_CHECKING:
+    from gcode.dialects import Dialect
+    from gcode.settings import MachineSettings
+
+_T = TypeVar("_T")
+
+
+class DialectName(StrEnum):
+    """Controls by name."""
+
+    FANUC = "fanuc"
+    HAAS = "haas"
+    LINUXCNC = "linuxcnc"
+    GRBL = "grbl"
+
+
+class MachineUnit(StrEnum):
+    """Unit of length of a machine."""
+
+    MM = "mm"
+    INCH = "inch"
+
+
+ProgramFile = Annotated[
+    Path, typer.Argument(metavar="FILE", exists=True, dir_okay=False, readable=True, show_default=False)
+]
+DialectOption = Annotated[DialectName, typer.Option("--dialect", "-d", help="Control whose language it is in.")]
+ToolTableOption = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE.tbl|.toml",
+        help="Tool table: LinuxCNC's, in the machine's unit, or [tools.N] in mm. Without one, lengths and radii are 0.",
+        show_default=False,
+    ),
+]
+ParametersOption = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE.var",
+        help="LinuxCNC's parameters, in the machine's unit: work offsets, reference points, variables.",
+        show_default=False,
+    ),
+]
+SettingsOption = Annotated[
+    Path | None, typer.Option(metavar="FILE.toml", help="Settings of the machine, lengths in mm.", show_default=False)
+]
+UnitOption = Annotated[
+    MachineUnit | None,
+    typer.Option(
+        "--machine-units",
+        help="Unit of the tables, and of programs until they say G20 or G21; that of the settings if not given, or mm.",
+        show_default=False,
+    ),
+]
+BlockDeleteOption = Annotated[bool, typer.Option("--block-delete", help="Leave blocks out that begin with a slash.")]
+SearchPathOption = Annotated[
+    list[Path] | None,
+    typer.Option(
+        metavar="DIR",
+        help="Folder with subprogram files; may be given again. The program's own folder comes first.",
+        exists=True,
+        file_okay=False,
+        show_default=False,
+    ),
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setup:
+    """Dialect and machine settings that options ask for."""
+
+    dialect: Dialect
+    settings: MachineSettings
+
+
+def setup_of(
+    *,
+    dialect: DialectName,
+    settings: Path | None,
+    tool_table: Path | None,
+    parameters: Path | None,
+    machine_units: MachineUnit | None,
+    block_delete: bool,
+    search_path: list[Path] | None,
+) -> Setup:
+    """Dialect and settings for the options' values; what is in the other files takes the place of the settings file's.
+
+    Raises:
+        UnusableFileError: for a file with a mistake, naming it.
+    """
+    from gcode.dialects import dialect_named
+    from gcode.settings import MachineSettings
+    from gcode.tables import read_parameters, read_settings, read_tool_table
+
+    made = _read(lambda: read_settings(settings)) if settings is not None else MachineSettings()
+    if machine_units is not None:
+        made = replace(made, units=machine_units.value)
+    if parameters is not None:
+        made = _read(lambda: read_parameters(parameters, made.units)).applied_to(made)
+    if tool_table is not None:
+        made = replace(made, tools=_read(lambda: read_tool_table(tool_table, made.units)))
+    made = replace(
+        made,
+        block_delete=made.block_delete or block_delete,
+        search_path=(*made.search_path, *(search_path or ())),
+    )
+    return Setup(dialect=dialect_named(dialect.value), settings=made)
+
+
+def _read(read: Callable[[], _T]) -> _T:
+    try:
+        return read()
+    except GcodeError as error:
+        raise UnusableFileError(error.underlined()) from None

@@ -1,0 +1,72 @@
+"""``gcode stats``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from gcode.cli.machine import (
+    BlockDeleteOption,
+    DialectName,
+    DialectOption,
+    ParametersOption,
+    ProgramFile,
+    SearchPathOption,
+    SettingsOption,
+    ToolTableOption,
+    UnitOption,
+    setup_of,
+)
+
+
+def _rate(value: float) -> float:
+    if not 0.0 < value < float("inf"):
+        raise typer.BadParameter(f"{value} is no positive, finite rate")
+    return value
+
+
+def stats(
+    file: ProgramFile,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    rapid_mm_min: Annotated[
+        float, typer.Option("--rapid-mm-min", callback=_rate, help="Speed of rapids along the path, mm/min.")
+    ] = 10_000.0,
+    dialect: DialectOption = DialectName.FANUC,
+    tool_table: ToolTableOption = None,
+    parameters: ParametersOption = None,
+    settings: SettingsOption = None,
+    machine_units: UnitOption = None,
+    block_delete: BlockDeleteOption = False,
+    search_path: SearchPathOption = None,
+) -> None:
+    """Sum up a program: lengths, times, the space it needs, feeds and speeds of each tool.
+
+    Times are those of feeds, dwells, and rapids at the given rate; accelerations and tool changes are not in them.
+    """
+    from gcode.cli.say import results, with_progress, written
+    from gcode.interpret import interpret_file
+    from gcode.stats import program_stats
+
+    setup = setup_of(
+        dialect=dialect,
+        settings=settings,
+        tool_table=tool_table,
+        parameters=parameters,
+        machine_units=machine_units,
+        block_delete=block_delete,
+        search_path=search_path,
+    )
+    events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
+    found = program_stats(with_progress(events, file.name), rapid_mm_min)
+    with written():
+        if as_json:
+            import json
+
+            from gcode.stats_json import stats_object
+
+            typer.echo(json.dumps({"file": str(file), **stats_object(found)}, indent=2))
+        else:
+            from gcode.cli.stats_tables import print_stats
+
+            print_stats(results(), file.name, found)
