@@ -1,7 +1,7 @@
 """Programs of other people, read from the directory that TWIN_REFERENCE_DIR names; skipped where it is not set.
 
 Layout: ``reference/gcode/NAME/*.ngc`` (or ``gcode/NAME``) with ``expected_motions.json`` or ``expected_error.txt``,
-made by LinuxCNC on an inch machine, and ``nc/*.NC``. A case whose language is not covered is skipped with the refusal.
+made by LinuxCNC on an inch machine, and ``nc/*.NC``.
 """
 
 from __future__ import annotations
@@ -9,87 +9,73 @@ from __future__ import annotations
 import json
 import math
 import os
-import re
+import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
+from support.rs274 import RS274, Move, moves_of, rows_of, run
+from support.rs274_compare import our_moves, settings_of, timed
 
-from gcode.dialects import LINUXCNC
 from gcode.errors import GcodeError
-from gcode.events import ArcMotion, LinearMotion, Motion
-from gcode.interpret import check, interpret, interpret_file
-from gcode.settings import MachineSettings
+from gcode.events import ArcMotion, LinearMotion
+from gcode.interpret import check, interpret_file
+from gcode.settings import MachineSettings, ToolOffset
 from gcode.source import read_program
 
+#: The expected motions were read from text with four decimals of an inch.
 TOLERANCE_MM = 0.005
 ROOT = Path(os.environ.get("TWIN_REFERENCE_DIR", "/nonexistent"))
-GCODE = next((p for p in (ROOT / "reference" / "gcode", ROOT / "gcode") if p.is_dir()), None)
-CASES = sorted(p.name for p in GCODE.iterdir()) if GCODE else []
-NOT_COVERED = {"unsupported-macro", "unsupported-code", "unsupported-word"}
-#: Cases that are covered whatever else is: without these the comparison below would prove nothing.
-COVERED = {"interp__good__good-arc.medium.metric.center-format"}
-ORIGIN = (0.0, 0.0, 0.0)
+GCODE = next((p for p in (ROOT / "reference" / "gcode", ROOT / "gcode") if p.is_dir()), Path())
+CASES = sorted(p.name for p in GCODE.iterdir()) if GCODE.name else []
 
-pytestmark = pytest.mark.skipif(GCODE is None, reason="TWIN_REFERENCE_DIR names no directory with gcode cases")
+pytestmark = pytest.mark.skipif(not CASES, reason="TWIN_REFERENCE_DIR names no directory with gcode cases")
 
 
-def without_constant_expressions(line: str) -> str:
-    """Puts the value of ``[a * b]`` in its place; the case that is meant tests an arc, not expressions."""
-    return re.sub(r"\[([\d.]+) \* ([\d.]+)\]", lambda m: f"{float(m[1]) * float(m[2]):.9g}", line)
+def files_of(name: str) -> tuple[Path, Path | None]:
+    """The program of a case and its tool table."""
+    (program,) = (GCODE / name).glob("*.ngc")
+    return program, next((GCODE / name).glob("*.tbl"), None)
 
 
-def start_units_mm() -> MachineSettings:
-    return MachineSettings(offsets={f"G{n}": ORIGIN for n in range(54, 60)})
+def assert_expected(name: str, moves: list[Move]) -> None:
+    expected = json.loads((GCODE / name / "expected_motions.json").read_text())
+    assert len(moves) == len(expected)
+    for number, (move, wanted) in enumerate(zip(moves, expected, strict=True)):
+        assert_same(move, wanted, f"motion {number}: {move}, expected {wanted}")
 
 
-def motions_of(path: Path) -> list[Motion]:
-    lines = map(without_constant_expressions, read_program(path))
-    events = interpret(lines, file=path.name, dialect=LINUXCNC, settings=start_units_mm())
-    return [event for event in events if isinstance(event, LinearMotion | ArcMotion)]
-
-
-def moving(expected: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The expected motions that go anywhere; LinuxCNC lists those that do not, too."""
-    at, kept = ORIGIN, []
-    for motion in expected:
-        if motion["t"] == "arc" or math.dist(at, motion["end"]) > 1e-6:
-            kept.append(motion)
-        at = motion["end"]
-    return kept
-
-
-def assert_same(motion: Motion, expected: dict[str, Any]) -> None:
-    assert math.dist(motion.end_mm, expected["end"]) < TOLERANCE_MM
-    assert motion.state.tool == expected["tool"]
-    if isinstance(motion, ArcMotion):
-        assert expected["t"] == "arc"
-        assert (motion.plane, motion.turns) == (expected["plane"], expected["rot"])
-        assert math.dist(motion.centre_mm, expected["centre"]) < TOLERANCE_MM
-    else:
-        assert expected["t"] == ("rapid" if motion.rapid else "feed")
-    if expected["t"] != "rapid":
-        assert math.isclose(motion.feed_mm_min, expected["feed"], rel_tol=1e-4)
+def assert_same(move: Move, wanted: dict[str, Any], said: str) -> None:
+    assert move.kind == wanted["t"], said
+    assert math.dist(move.end, wanted["end"]) < TOLERANCE_MM, said
+    assert math.dist(move.abc, wanted["abc"]) < TOLERANCE_MM, said
+    assert (move.tool, move.rpm, move.direction) == (wanted["tool"], wanted["s"], wanted["sdir"]), said
+    assert (move.plane, move.turns) == (wanted.get("plane", 0), wanted.get("rot", 0)), said
+    assert move.kind == "rapid" or math.isclose(move.feed, wanted["feed"], rel_tol=1e-4), said
+    if move.kind == "arc":
+        assert math.dist(move.centre, wanted["centre"]) < TOLERANCE_MM, said
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_reference_case(name: str) -> None:
-    assert GCODE is not None
-    (program,) = (GCODE / name).glob("*.ngc")
+    program, table = files_of(name)
     if (GCODE / name / "expected_error.txt").exists():
-        lines = map(without_constant_expressions, read_program(program))
-        assert check(lines, file=program.name, dialect=LINUXCNC, settings=start_units_mm())
+        with pytest.raises(GcodeError):
+            our_moves(program, settings_of(table))
         return
-    try:
-        motions = motions_of(program)
-    except GcodeError as error:
-        if error.code in NOT_COVERED and name not in COVERED:
-            pytest.skip(f"not covered: {error}")
-        raise
-    expected = moving(json.loads((GCODE / name / "expected_motions.json").read_text()))
-    assert len(motions) == len(expected)
-    for motion, wanted in zip(motions, expected, strict=True):
-        assert_same(motion, wanted)
+    assert_expected(name, timed(our_moves(program, settings_of(table))))
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.skipif(RS274 is None, reason="rs274 is not installed")
+def test_reading_rs274_gives_the_expected_motions(name: str, tmp_path: Path) -> None:
+    """The comparisons with ``rs274`` elsewhere read its output as whoever made the expected motions did."""
+    program, table = files_of(name)
+    listing = run(Path(shutil.copy(program, tmp_path)), table=table)
+    if (GCODE / name / "expected_error.txt").exists():
+        assert (GCODE / name / "expected_error.txt").read_text().strip() in listing.error
+        return
+    assert_expected(name, timed(moves_of(listing.calls, rows_of(table))))
 
 
 @pytest.mark.parametrize(
@@ -105,12 +91,13 @@ def test_real_programs_run_whole(name: str, centres: Any, lines: int, arcs: int)
     if not path.exists():
         pytest.skip(f"{path} is not there")
     settings = MachineSettings(
-        length_offsets_mm={1: 100.0, 3: 90.0},
+        tools={1: ToolOffset(length_mm=100.0), 3: ToolOffset(length_mm=90.0)},
         home_mm=(0.0, 0.0, 400.0),
         start_mm=(0.0, 0.0, 400.0),
         arc_centres=centres,
     )
     events = list(interpret_file(path, settings=settings))
-    assert sum(isinstance(event, LinearMotion) for event in events) == lines
+    moving = [e for e in events if isinstance(e, LinearMotion) and math.dist(e.start_mm, e.end_mm) > 0.0]
+    assert len(moving) == lines
     assert sum(isinstance(event, ArcMotion) for event in events) == arcs
     assert check(read_program(path), settings=settings) == []
