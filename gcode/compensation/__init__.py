@@ -12,7 +12,7 @@ from gcode.compensation.linuxcnc import LinuxCncCompensation
 from gcode.compensation.planar import Frame
 from gcode.compensation.value import Compensation, Hand, Style, finite_radius
 from gcode.compensation.value import plane_refused as _plane_refused
-from gcode.compensation.vectors import Joint
+from gcode.compensation.vectors import Joint, Kind
 from gcode.errors import Place
 from gcode.events import Event, Motion, Plane, Point
 
@@ -48,7 +48,7 @@ def begin(
     if style != "linuxcnc":
         frame, offset = Frame(plane=plane), signed(side, radius_mm)
         at, height = frame.flat(position_mm), frame.height(position_mm)
-        kind = "A" if style == "fanuc-A" else "B"
+        kind: Kind = "A" if style == "fanuc-A" else "B"
         return FanucCompensation(
             frame=frame, at=at, height=height, kind=kind, joint=joint, offset=offset, previous=offset
         )

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from gcode.compensation.planar import Segment, dot
 from gcode.compensation.value import Compensation, Hand, finite_radius, fits, gouge
-from gcode.compensation.vectors import Corner, Joint, cancel_vectors, corner_vectors, startup_vectors, upright
+from gcode.compensation.vectors import Corner, Joint, Kind, cancel_vectors, corner_vectors, startup_vectors, upright
 from gcode.errors import GcodeError, Place
 from gcode.events import Block, Event, LinearMotion, Motion, Notice, Point
 
@@ -51,7 +51,7 @@ class FanucCompensation(Compensation):
         held: what follows it.
     """
 
-    kind: str
+    kind: Kind
     offset: float
     previous: float
     joint: Joint = "linear"
@@ -127,7 +127,9 @@ class FanucCompensation(Compensation):
         if self.square or self._read_over(segment.motion) > BLOCKS_READ_OVER:
             points = upright(waiting.segment, waiting.offset)
             return points if segment.centre is None else (*points, *corner.starting(self.previous))
-        return (startup_vectors if waiting.startup else corner_vectors)(corner, self.kind, self.joint)
+        if waiting.startup:
+            return startup_vectors(corner, self.kind, self.joint)
+        return corner_vectors(corner, self.joint)
 
     def _read_over(self, motion: Motion) -> int:
         """Blocks without motion in the plane between the motion that waits and `motion`."""
@@ -219,6 +221,3 @@ def _blind(waiting: Waiting, blocks: int) -> Notice:
         "the tool ends beside this block, which may overcut or leave material at the corner"
     )
     return Notice(place=waiting.segment.motion.place, code="compensation-look-ahead", text=text)
-
-
-__all__ = ["BLOCKS_READ_OVER", "FanucCompensation", "signed"]

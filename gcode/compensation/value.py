@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from gcode.compensation.planar import Frame, Segment
+from gcode.compensation.planar import SAME_POINT_MM, Frame, Segment
 from gcode.errors import GcodeError, Place
 from gcode.events import Event, Motion, Plane, Point
 
@@ -87,7 +87,7 @@ def fits(segment: Segment, radius: float) -> None:
     if segment.centre is None:
         return
     arc = abs(segment.end - segment.centre)
-    if arc <= radius:
+    if arc - radius <= SAME_POINT_MM:
         problem = f"the tool of radius {radius:.4f} mm does not fit inside the arc of radius {arc:.4f} mm"
         expected = f"an arc of more than {radius:.4f} mm, or a smaller tool"
         raise GcodeError(segment.motion.place, "compensation-radius", problem, expected)

@@ -15,6 +15,7 @@ from gcode.compensation.planar import Segment, circle_circle, cross, dot, line_c
 from gcode.errors import GcodeError
 
 Joint: TypeAlias = Literal["linear", "arc"]
+Kind: TypeAlias = Literal["A", "B"]
 Bend: TypeAlias = Literal["inner", "obtuse", "acute"]
 Points: TypeAlias = tuple[complex, ...]
 
@@ -70,7 +71,7 @@ def upright(segment: Segment, offset: float) -> Points:
     return (segment.end + 1j * offset * segment.direction_out,)
 
 
-def startup_vectors(corner: Corner, kind: str, joint: Joint) -> Points:
+def startup_vectors(corner: Corner, kind: Kind, joint: Joint) -> Points:
     """Start-up (the first motion of G41 or G42).
 
     Type A ends at right angles to the start of the next block at every corner; type B does so at inner corners only
@@ -78,19 +79,18 @@ def startup_vectors(corner: Corner, kind: str, joint: Joint) -> Points:
     """
     if kind == "A" or corner.bend == "inner":
         return corner.starting(corner.offset)
-    return corner_vectors(corner, kind, joint)
+    return corner_vectors(corner, joint)
 
 
-def cancel_vectors(corner: Corner, kind: str, joint: Joint) -> Points:
+def cancel_vectors(corner: Corner, kind: Kind, joint: Joint) -> Points:
     """Cancel (the motion of G40), which mirrors the start-up: at right angles to the end of the block before."""
     if kind == "A" or corner.bend == "inner":
         return upright(corner.before, corner.offset)
-    return corner_vectors(corner, kind, joint)
+    return corner_vectors(corner, joint)
 
 
-def corner_vectors(corner: Corner, kind: str, joint: Joint) -> Points:
+def corner_vectors(corner: Corner, joint: Joint) -> Points:
     """Corners in the offset mode, which are the same with both types."""
-    del kind
     if joint == "arc" and corner.bend != "inner":
         return (corner.ending, *corner.starting(corner.offset))
     return _VECTORS[corner.bend](corner)
