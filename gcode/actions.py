@@ -1,4 +1,4 @@
-"""The phases of a block that move nothing: modes, feed, spindle, tool, offsets, coolant, dwell, stops and notices."""
+"""The phases of a block that move nothing: modes, feed, spindle, tool, coolant, dwell, stops and notices."""
 
 from __future__ import annotations
 
@@ -7,15 +7,31 @@ from dataclasses import replace
 from typing import Literal, TypeAlias
 
 from gcode.blocks import ParsedBlock, Word
-from gcode.events import CoolantChange, Dwell, Event, Notice, ProgramStop, SpindleChange, ToolChange
+from gcode.events import CoolantChange, Dwell, Event, FeedMode, Notice, ProgramStop, SpindleChange, ToolChange
 from gcode.modal import Command
-from gcode.state import MODE_OF_CODE, PLANE_OF_CODE, State
+from gcode.state import MM_PER_INCH, State
 
 Result: TypeAlias = tuple[State, tuple[Event, ...]]
 Action: TypeAlias = Callable[[State, Command], Result]
 
+#: Field of `Modes` and its value, for every code whose whole effect is one mode.
+_MODE_OF_CODE: Mapping[str, tuple[str, object]] = {
+    "G7": ("diameter", True),
+    "G8": ("diameter", False),
+    "G20": ("unit_mm", MM_PER_INCH),
+    "G21": ("unit_mm", 1.0),
+    "G90": ("absolute", True),
+    "G91": ("absolute", False),
+    "G90.1": ("absolute_centres", True),
+    "G91.1": ("absolute_centres", False),
+    "G98": ("return_to_r", False),
+    "G99": ("return_to_r", True),
+}
+_PLANE_OF_CODE: Mapping[str, int] = {"G17": 17, "G18": 18, "G19": 19}
+#: Motion codes that a canned cycle's end falls back to.
+_BASE_MOTIONS = frozenset({"G0", "G1", "G2", "G3"})
+_FEED_MODES: Mapping[str, FeedMode] = {"G93": "inverse-time", "G94": "per-minute", "G95": "per-revolution"}
 _SPINDLE: Mapping[str, Literal[-1, 0, 1]] = {"M3": 1, "M4": -1, "M5": 0, "M19": 0}
-_LENGTH_SIGN: Mapping[str, float] = {"G43": 1.0, "G44": -1.0, "G49": 0.0}
 _ENDS = frozenset({"M2", "M30"})
 
 
@@ -30,7 +46,12 @@ def whole_number(block: ParsedBlock, word: Word) -> int:
     return int(word.value)
 
 
-def _not_negative(block: ParsedBlock, word: Word) -> float:
+def not_negative(block: ParsedBlock, word: Word) -> float:
+    """The value of a word that may not be negative.
+
+    Raises:
+        GcodeError: where it is.
+    """
     if word.value < 0.0:
         raise block.error(word, "bad-value", f"{word.text} is negative", f"{word.letter} of 0 or more")
     return word.value
@@ -38,29 +59,77 @@ def _not_negative(block: ParsedBlock, word: Word) -> float:
 
 def set_modes(state: State, command: Command) -> Result:
     """Codes whose whole effect is one modal value."""
-    for rule, _ in command.of_phase("modes"):
-        if rule.code in PLANE_OF_CODE:
-            state = state.with_machine(plane=PLANE_OF_CODE[rule.code])
-        else:
-            name, value = MODE_OF_CODE[rule.code]
+    for rule, word in command.of_phase("modes"):
+        code = rule.code
+        if code in _PLANE_OF_CODE:
+            state = _with_plane(state, command, word, _PLANE_OF_CODE[code])
+        elif code in _MODE_OF_CODE:
+            name, value = _MODE_OF_CODE[code]
             state = state.with_modes(**{name: value})
+        else:
+            state = _with_motion(state, code)
     return state, ()
 
 
+def _with_motion(state: State, code: str) -> State:
+    """The state under a motion code; outside of a cycle nothing of the last cycle is remembered."""
+    modes = state.modes
+    cancels = code == "G80"
+    if cancels and state.control.dialect.power_on_motion != "G80":
+        code = modes.base_motion
+    if code == modes.motion and not cancels:
+        return state
+    cycles = state.control.dialect.cycles
+    if cycles is not None and code in cycles.cycles:
+        return state.with_modes(motion=code)
+    base = code if code in _BASE_MOTIONS else modes.base_motion
+    return state.with_modes(motion=code, base_motion=base, in_cycle=False, rigid_tapping=False, spline_lead_mm=None)
+
+
+def _with_plane(state: State, command: Command, word: Word, plane: int) -> State:
+    if plane != state.machine.plane and state.path is not None and state.path.compensates:
+        problem = f"{word.text} while cutter compensation is on"
+        raise command.block.error(word, "compensation-plane", problem, "G40 before another plane")
+    return state.with_machine(plane=plane)
+
+
+def set_feed_mode(state: State, command: Command) -> Result:
+    """G93, G94, G95. A feed given in another mode does not hold on."""
+    mode = _FEED_MODES[command.of_phase("feed_mode")[0].rule.code]
+    if mode == state.machine.feed_mode:
+        return state, ()
+    return state.with_machine(feed_mode=mode).with_modes(feed=0.0), ()
+
+
 def set_feed(state: State, command: Command) -> Result:
-    """F, in program units a minute."""
-    feed = _not_negative(command.block, command.words["F"]) * state.modes.unit_mm
-    return state.with_modes(feed_mm_min=feed), ()
+    """F, in program units a minute or a revolution, or per minute with inverse time."""
+    feed = not_negative(command.block, command.words["F"])
+    unit = 1.0 if state.machine.feed_mode == "inverse-time" else state.modes.unit_mm
+    return state.with_modes(feed=feed * unit), ()
+
+
+def set_speed_mode(state: State, command: Command) -> Result:
+    """G96 and G97. With G96, S is a surface speed and the spindle's speed follows from the distance to X0."""
+    use = command.of_phase("speed_mode")[0]
+    if use.rule.code == "G97":
+        return state.with_modes(surface_speed=None), ()
+    if "S" not in command.words and state.modes.surface_speed is None:
+        raise command.block.error(use.word, "missing-speed", f"{use.word.text} without S", "S and a surface speed")
+    limit = not_negative(command.block, command.words["D"]) if "D" in command.words else None
+    return state.with_modes(surface_speed=state.modes.surface_speed or 0.0, surface_speed_limit=limit), ()
 
 
 def set_speed(state: State, command: Command) -> Result:
     """S; the change is reported here unless a spindle code of the same block reports it."""
-    rpm = _not_negative(command.block, command.words["S"])
-    changed = rpm != state.machine.spindle_rpm
-    state = state.with_machine(spindle_rpm=rpm) if changed else state
+    value = not_negative(command.block, command.words["S"])
+    if state.modes.surface_speed is not None:
+        metre = 1.0 if state.modes.unit_mm == 1.0 else 0.3048
+        return state.with_modes(surface_speed=value * metre), ()
+    changed = value != state.machine.spindle_rpm
+    state = state.with_machine(spindle_rpm=value) if changed else state
     if not changed or command.of_phase("spindle_on"):
         return state, ()
-    return state, (_spindle_event(state, command),)
+    return state, (spindle_event(state, command),)
 
 
 def set_spindle_on(state: State, command: Command) -> Result:
@@ -77,10 +146,11 @@ def _set_spindle(state: State, command: Command, phase: str) -> Result:
     direction = _SPINDLE[command.of_phase(phase)[0].rule.code]
     if direction != state.machine.spindle_direction:
         state = state.with_machine(spindle_direction=direction)
-    return state, (_spindle_event(state, command),)
+    return state, (spindle_event(state, command),)
 
 
-def _spindle_event(state: State, command: Command) -> SpindleChange:
+def spindle_event(state: State, command: Command) -> SpindleChange:
+    """The event that tells the spindle's present state."""
     machine = state.machine
     return SpindleChange(
         place=command.block.place, spindle_rpm=machine.spindle_rpm, spindle_direction=machine.spindle_direction
@@ -93,70 +163,33 @@ def select_tool(state: State, command: Command) -> Result:
 
 
 def change_tool(state: State, command: Command) -> Result:
-    """M6: the selected tool goes in, and the spindle stops."""
+    """M6: the selected tool goes in, and the spindle stops. M61 Q: the tool that is in gets a number."""
+    use = command.of_phase("tool_change")[0]
+    if use.rule.code == "M61":
+        return _name_tool(state, command, use.word)
     block, tool = command.block, state.modes.next_tool
     if tool is None:
-        word = command.of_phase("tool_change")[0].word
-        raise block.error(word, "missing-tool", f"{word.text} with no tool selected", "a T word before or beside it")
+        if not state.control.dialect.tool_defaults_to_present:
+            text = f"{use.word.text} with no tool selected"
+            raise block.error(use.word, "missing-tool", text, "a T word before or beside it")
+        tool = state.machine.tool
     events: tuple[Event, ...] = ()
     if state.machine.spindle_direction:
         state = state.with_machine(spindle_direction=0)
-        events = (_spindle_event(state, command),)
+        events = (spindle_event(state, command),)
     return state.with_machine(tool=tool), (*events, ToolChange(place=block.place, tool=tool))
 
 
-def set_work_offset(state: State, command: Command) -> Result:
-    """G54 to G59 and the further ones of a dialect."""
-    rule, word = command.of_phase("work_offset")[0]
-    offsets = state.control.settings.offsets
-    if rule.code not in offsets:
-        known = ", ".join(offsets)
-        problem = f"work offset {rule.code} is not given"
-        raise command.block.error(word, "unknown-work-offset", problem, f"one of the machine's offsets: {known}")
-    return state.with_machine(wcs=rule.code), ()
+def _name_tool(state: State, command: Command, word: Word) -> Result:
+    if "Q" not in command.words:
+        raise command.block.error(word, "missing-tool", f"{word.text} without Q", "Q and the number of the tool")
+    tool = whole_number(command.block, command.words["Q"])
+    return state.with_machine(tool=tool), (ToolChange(place=command.block.place, tool=tool),)
 
 
-def set_length(state: State, command: Command) -> Result:
-    """G43, G44, G49 and H: which tool length offset holds. Nothing moves."""
-    uses = command.of_phase("length")
-    code = uses[0].rule.code if uses else state.modes.length_code
-    word = command.words.get("H")
-    number = whole_number(command.block, word) if word else state.modes.length_number
-    offset = 0.0
-    if _LENGTH_SIGN[code]:
-        if word is None and not state.control.dialect.length_word_is_modal:
-            number = None
-        offset = _LENGTH_SIGN[code] * _length_offset(state, command, number)
-    return _with_length(state, code, number, offset), ()
-
-
-def _with_length(state: State, code: str, number: int | None, offset_mm: float) -> State:
-    """The state under another length offset: the gauge point stays, so the controlled point changes."""
-    change = offset_mm - state.machine.length_offset_mm
-    x, y, z = state.position_mm
-    unmoved = state.modes.unmoved_length_mm + change if state.control.dialect.incremental_adds_length else 0.0
-    state = state.with_modes(length_code=code, length_number=number, unmoved_length_mm=unmoved)
-    if change == 0.0:
-        return state
-    return replace(state.with_machine(length_offset_mm=offset_mm), position_mm=(x, y, z - change))
-
-
-def _length_offset(state: State, command: Command, number: int | None) -> float:
-    """Entry of the offset table for an H number, mm."""
-    dialect, table = state.control.dialect, state.control.settings.length_offsets_mm
-    word = command.words.get("H") or command.of_phase("length")[0].word
-    if dialect.length_defaults_to_tool and not number:
-        number = state.machine.tool
-    if number is None:
-        problem = f"{word.text} without an H word, and none before"
-        raise command.block.error(word, "missing-length-offset", problem, "H and the number of a tool length offset")
-    if number == 0:
-        return 0.0
-    if number not in table:
-        known = ", ".join(f"H{n}" for n in sorted(table)) or "none is given"
-        problem = f"tool length offset {number} is not in the table"
-        raise command.block.error(word, "unknown-length-offset", problem, f"one of the table: {known}")
-    return table[number]
+def set_rigid_tapping(state: State, command: Command) -> Result:
+    """M29: the tapping cycle that follows is rigid."""
+    return state.with_modes(rigid_tapping=True), ()
 
 
 def set_coolant_on(state: State, command: Command) -> Result:
@@ -184,10 +217,11 @@ def dwell(state: State, command: Command) -> Result:
         count = "without a time" if not given else "with two times"
         raise block.error(use.word, "bad-dwell", f"{use.word.text} {count}", f"{' or '.join(table)} and a time")
     word, rule = given[0], table[given[0].letter]
-    if rule.whole and word.has_point:
+    unit = rule.pointed if word.has_point else rule.seconds
+    if unit is None:
         problem = f"{word.text} has a decimal point, but counts steps of {rule.seconds} s"
         raise block.error(word, "bad-dwell", problem, f"{word.letter} without a point, or X and seconds")
-    seconds = _not_negative(block, word) * rule.seconds
+    seconds = not_negative(block, word) * unit
     return state, (Dwell(place=block.place, state=state.machine, seconds=seconds),)
 
 
@@ -195,7 +229,8 @@ def stop(state: State, command: Command) -> Result:
     """M0, M1, M2, M30 and the dialect's further stops."""
     code = command.of_phase("stop")[0].rule.code
     ends = code in _ENDS
-    event = ProgramStop(place=command.block.place, optional=code == "M1", end=ends)
+    message = "; ".join(command.block.comments) if not ends else ""
+    event = ProgramStop(place=command.block.place, optional=code == "M1", end=ends, message=message)
     return (replace(state, ended=True) if ends else state), (event,)
 
 
@@ -213,16 +248,17 @@ def notice(state: State, command: Command) -> Result:
 
 ACTIONS: Mapping[str, Action] = {
     "modes": set_modes,
+    "feed_mode": set_feed_mode,
     "feed": set_feed,
+    "speed_mode": set_speed_mode,
     "speed": set_speed,
     "tool": select_tool,
     "tool_change": change_tool,
     "spindle_on": set_spindle_on,
     "spindle_off": set_spindle_off,
+    "rigid_tapping": set_rigid_tapping,
     "coolant_on": set_coolant_on,
     "coolant_off": set_coolant_off,
-    "work_offset": set_work_offset,
-    "length": set_length,
     "dwell": dwell,
     "stop": stop,
     "notice": notice,

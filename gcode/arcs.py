@@ -1,26 +1,43 @@
 """G2 and G3: centre, sense and turns of an arc from its words, in any of the three planes.
 
 Each plane's two axes are taken in the order of `PLANE_AXES` (XY, ZX, YZ), which makes a right-handed frame with the
-plane's normal; G3 is counter-clockwise seen against that normal in all three.
+plane's normal; G3 is counter-clockwise seen against that normal in all three. All is worked out in the axes of the
+program and then brought to machine coordinates, so that a rotation, scaling or mirror image acts on the whole arc.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
-from gcode.actions import Result
+from gcode.actions import Result, whole_number
 from gcode.blocks import Word
 from gcode.dialects import ArcTolerance
 from gcode.errors import GcodeError
 from gcode.events import PLANE_AXES, ArcMotion, Point
-from gcode.frame import SAME_PLACE_MM, moved_to, programmed_end, require_feed, settled, work_zero
+from gcode.frame import SAME_PLACE_MM
 from gcode.modal import Command
 from gcode.state import State
+from gcode.targets import extra_end, feed_mm_min, moved_to, program_end, programmed_end, settled
 
 _CENTRE_LETTERS = "IJK"
 _TURNS: Mapping[str, int] = {"G2": -1, "G3": 1}
 _PLANE_NAMES: Mapping[int, str] = {17: "XY", 18: "ZX", 19: "YZ"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Ends:
+    """Ends of an arc and the program zero, mm: machine coordinates, or those of a program that is turned.
+
+    Attributes:
+        closed: the end lies over the start.
+    """
+
+    start: Point
+    end: Point
+    zero: Point
+    closed: bool = False
 
 
 def arc(state: State, command: Command) -> Result:
@@ -28,26 +45,47 @@ def arc(state: State, command: Command) -> Result:
 
     Raises:
         GcodeError: without a feed, without a centre or with two, with a centre word of another plane, with an R too
-            small to reach, and where the radii at the two ends do not agree.
+            small to reach, where the radii at the two ends do not agree, and where scaling makes it no circle.
     """
-    require_feed(state, command)
-    start, end = state.position_mm, programmed_end(state, command)
+    if state.modes.feed <= 0.0:
+        feed_mm_min(state, command, 0.0)
+    ends = _ends(state, command)
     centre_words = {letter: command.words[letter] for letter in _CENTRE_LETTERS if letter in command.words}
     radius = command.words.get("R")
     if radius is not None and centre_words:
         problem = f"{radius.text} beside {', '.join(w.text for w in centre_words.values())}"
         raise command.block.error(radius, "arc-two-centres", problem, "a radius R, or a centre by I, J, K")
     if radius is not None:
-        centre = _centre_from_radius(state, command, end, radius)
+        centre = _centre_from_radius(state, command, ends, radius)
     elif centre_words:
-        centre = _centre_from_words(state, command, end, centre_words)
+        centre = _centre_from_words(state, command, ends, centre_words)
     else:
         problem = f"{state.modes.motion} without a centre"
         raise command.block.error(None, "arc-without-centre", problem, "I, J, K or R")
-    return _arc_motion(settled(state, command), command, _closed(state, start, end), centre)
+    return _arc_motion(state, command, _closed(state, ends), centre)
 
 
-def _arc_motion(state: State, command: Command, end: Point, centre: Point) -> Result:
+def _ends(state: State, command: Command) -> _Ends:
+    frame = state.frame
+    if frame.matrix is None and not state.modes.polar:
+        return _Ends(state.position_mm, programmed_end(state, command), frame.zero_mm)
+    if frame.plane_scale(state.machine.plane) is None:
+        problem = f"{state.modes.motion} while the {_plane(state)} is scaled unevenly or turned out of itself"
+        raise command.block.error(None, "arc-uneven-scale", problem, "straight motions, or an even scale")
+    return _Ends(state.program_mm, program_end(state, command), (0.0, 0.0, 0.0))
+
+
+def _arc_motion(state: State, command: Command, ends: _Ends, centre: Point) -> Result:
+    frame, end = state.frame, ends.end
+    turned = frame.matrix is not None or state.modes.polar
+    if turned:
+        end, centre = frame.to_machine(end), frame.to_machine(centre)
+        if ends.closed:
+            end = _over(state, state.position_mm, end)
+    turns = _TURNS[state.modes.motion] * _whole_turns(command)
+    if (frame.plane_scale(state.machine.plane) or 1.0) < 0.0:
+        turns = -turns
+    extra = extra_end(state, command)
     event = ArcMotion(
         place=command.block.place,
         state=state.machine,
@@ -55,57 +93,83 @@ def _arc_motion(state: State, command: Command, end: Point, centre: Point) -> Re
         end_mm=end,
         centre_mm=centre,
         plane=state.machine.plane,
-        turns=_TURNS[state.modes.motion],
-        feed_mm_min=state.modes.feed_mm_min,
+        turns=turns,
+        feed_mm_min=0.0,
+        extra=extra,
     )
-    return moved_to(state, end), (event,)
+    event = replace(event, feed_mm_min=feed_mm_min(state, command, _length(event)))
+    return moved_to(settled(state, command), end, extra), (event,)
 
 
-def _closed(state: State, start: Point, end: Point) -> Point:
-    """`end`, put exactly over `start` where rounding alone parts them: then the arc is a full turn, not none."""
-    first, second, normal = PLANE_AXES[state.machine.plane]
-    if math.hypot(end[first] - start[first], end[second] - start[second]) > SAME_PLACE_MM:
-        return end
+def _whole_turns(command: Command) -> int:
+    """P: how many turns are begun."""
+    word = command.words.get("P")
+    if word is None:
+        return 1
+    turns = whole_number(command.block, word)
+    if turns == 0:
+        raise command.block.error(word, "bad-value", f"{word.text} is no count of turns", "P1 or more")
+    return turns
+
+
+def _length(event: ArcMotion) -> float:
+    """Length of an arc or helix, mm, by its mean radius."""
+    i, j, k = PLANE_AXES[event.plane]
+    start, end, centre = event.start_mm, event.end_mm, event.centre_mm
+    radius = math.hypot(start[i] - centre[i], start[j] - centre[j]) + math.hypot(end[i] - centre[i], end[j] - centre[j])
+    return math.hypot(event.sweep_rad * radius / 2.0, end[k] - start[k])
+
+
+def _closed(state: State, ends: _Ends) -> _Ends:
+    """The end put exactly over the start where rounding alone parts them: then the arc is a full turn, not none."""
+    first, second, _ = PLANE_AXES[state.machine.plane]
+    if math.hypot(ends.end[first] - ends.start[first], ends.end[second] - ends.start[second]) > SAME_PLACE_MM:
+        return ends
+    return replace(ends, end=_over(state, ends.start, ends.end), closed=True)
+
+
+def _over(state: State, start: Point, end: Point) -> Point:
+    """`start` at the height of `end`."""
+    normal = PLANE_AXES[state.machine.plane][2]
     closed = list(start)
     closed[normal] = end[normal]
     return (closed[0], closed[1], closed[2])
 
 
-def _centre_from_words(state: State, command: Command, end: Point, words: Mapping[str, Word]) -> Point:
+def _centre_from_words(state: State, command: Command, ends: _Ends, words: Mapping[str, Word]) -> Point:
     """Centre from I, J, K, checked against both ends."""
     first, second, normal = PLANE_AXES[state.machine.plane]
     if _CENTRE_LETTERS[normal] in words:
         word = words[_CENTRE_LETTERS[normal]]
         expected = f"{_CENTRE_LETTERS[first]} and {_CENTRE_LETTERS[second]}"
-        raise command.block.error(word, "arc-plane", f"{word.text} in an arc of {_plane(state)}", expected)
+        raise command.block.error(word, "arc-plane", f"{word.text} in an arc of the {_plane(state)}", expected)
     if state.modes.absolute_centres and len(words) < 2:
         problem = f"{next(iter(words.values())).text} alone as an absolute arc centre"
         expected = f"both {_CENTRE_LETTERS[first]} and {_CENTRE_LETTERS[second]}"
         raise command.block.error(next(iter(words.values())), "arc-centre-incomplete", problem, expected)
-    centre = _centre(state, command, words, absolute=state.modes.absolute_centres)
-    radii = _radii(state, end, centre)
+    centre = _centre(state, ends, words, absolute=state.modes.absolute_centres)
+    radii = _radii(state, ends, centre)
     if max(radii) <= SAME_PLACE_MM:
         raise command.block.error(None, "arc-zero-radius", "an arc of radius 0", "a centre away from the start")
     if not _tolerance(state).accepts(*radii):
-        raise _radius_error(state, command, end, words, radii)
+        raise _radius_error(state, command, ends, words, radii)
     return centre
 
 
-def _centre(state: State, command: Command, words: Mapping[str, Word], *, absolute: bool) -> Point:
+def _centre(state: State, ends: _Ends, words: Mapping[str, Word], *, absolute: bool) -> Point:
     """The centre that I, J, K name; along the plane's normal it lies level with the start."""
-    start = state.position_mm
-    origin = work_zero(state, command) if absolute else start
-    centre = list(start)
+    origin = ends.zero if absolute else ends.start
+    centre = list(ends.start)
     for axis in PLANE_AXES[state.machine.plane][:2]:
         word = words.get(_CENTRE_LETTERS[axis])
         centre[axis] = origin[axis] + (word.value * state.modes.unit_mm if word else 0.0)
     return (centre[0], centre[1], centre[2])
 
 
-def _radii(state: State, end: Point, centre: Point) -> tuple[float, float]:
+def _radii(state: State, ends: _Ends, centre: Point) -> tuple[float, float]:
     """Distances in the plane of the arc's start and end from its centre, mm."""
     first, second, _ = PLANE_AXES[state.machine.plane]
-    start = state.position_mm
+    start, end = ends.start, ends.end
     return (
         math.hypot(start[first] - centre[first], start[second] - centre[second]),
         math.hypot(end[first] - centre[first], end[second] - centre[second]),
@@ -113,7 +177,7 @@ def _radii(state: State, end: Point, centre: Point) -> tuple[float, float]:
 
 
 def _radius_error(
-    state: State, command: Command, end: Point, words: Mapping[str, Word], radii: tuple[float, float]
+    state: State, command: Command, ends: _Ends, words: Mapping[str, Word], radii: tuple[float, float]
 ) -> GcodeError:
     """The error for radii that do not agree; it says so where the other meaning of I, J, K would fit."""
     now = "absolute" if state.modes.absolute_centres else "incremental"
@@ -122,7 +186,7 @@ def _radius_error(
         f"the arc's radius is {radii[0]:.4f} mm at its start and {radii[1]:.4f} mm at its end, "
         f"with {now} centre {' '.join(word.text for word in words.values())}"
     )
-    alternative = _radii(state, end, _centre(state, command, words, absolute=not state.modes.absolute_centres))
+    alternative = _radii(state, ends, _centre(state, ends, words, absolute=not state.modes.absolute_centres))
     expected = f"radii within {_tolerance(state).absolute_mm:g} mm of each other"
     if _tolerance(state).accepts(*alternative) and min(alternative) > SAME_PLACE_MM:
         switch = "G91.1" if state.modes.absolute_centres else "G90.1"
@@ -135,10 +199,10 @@ def _tolerance(state: State) -> ArcTolerance:
     return state.control.dialect.arc_tolerance if given is None else ArcTolerance(absolute_mm=given)
 
 
-def _centre_from_radius(state: State, command: Command, end: Point, word: Word) -> Point:
+def _centre_from_radius(state: State, command: Command, ends: _Ends, word: Word) -> Point:
     """Centre from R: R > 0 is the arc of at most half a turn, R < 0 the longer one."""
     first, second, _ = PLANE_AXES[state.machine.plane]
-    start, radius = state.position_mm, word.value * state.modes.unit_mm
+    start, end, radius = ends.start, ends.end, word.value * state.modes.unit_mm
     along, across = end[first] - start[first], end[second] - start[second]
     chord = math.hypot(along, across)
     if chord <= SAME_PLACE_MM:
@@ -156,4 +220,4 @@ def _centre_from_radius(state: State, command: Command, end: Point, word: Word) 
 
 
 def _plane(state: State) -> str:
-    return f"the {_PLANE_NAMES[state.machine.plane]} plane (G{state.machine.plane})"
+    return f"{_PLANE_NAMES[state.machine.plane]} plane (G{state.machine.plane})"

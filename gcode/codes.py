@@ -30,8 +30,8 @@ class CodeRule:
         groups: modal groups; two codes that share one cannot stand in one block.
         status: what becomes of it.
         phase: step in the order of execution of a block (`Dialect.order`); empty where nothing is to be done.
-        letters: letters of the words that it takes.
-        takes_axes: True where its X, Y, Z are its own, so that the block has no motion besides.
+        letters: letters of the words that it takes; ``*`` for every letter that nothing else takes.
+        takes_axes: True where its axis words are its own, so that the block has no motion besides.
         meaning: what it is, in words, for messages and reference tables.
     """
 
@@ -76,9 +76,14 @@ def executed(groups: str, phase: str, meanings: Mapping[str, str], letters: str 
     return rules(groups, Status.EXECUTED, meanings, phase=phase, letters=letters)
 
 
-def neutral(groups: str, meanings: Mapping[str, str]) -> dict[str, CodeRule]:
+def owning(groups: str, phase: str, meanings: Mapping[str, str], letters: str) -> dict[str, CodeRule]:
+    """Rows of codes that `phase` executes and whose axis words are their own."""
+    return rules(groups, Status.EXECUTED, meanings, phase=phase, letters=letters, takes_axes=True)
+
+
+def neutral(groups: str, meanings: Mapping[str, str], letters: str = "") -> dict[str, CodeRule]:
     """Rows of codes that ask for what always holds here."""
-    return rules(groups, Status.NEUTRAL, meanings)
+    return rules(groups, Status.NEUTRAL, meanings, letters=letters)
 
 
 def noticed(groups: str, meanings: Mapping[str, str], letters: str = "") -> dict[str, CodeRule]:
@@ -99,37 +104,38 @@ COMMON: Table = {
     **executed("units", "modes", {"G20": "inch", "G21": "millimetre"}),
     **executed("distance", "modes", {"G90": "absolute", "G91": "incremental"}),
     **executed("arc-centre", "modes", {"G90.1": "absolute arc centres", "G91.1": "incremental arc centres"}),
-    **rules(
-        "one-shot",
-        Status.EXECUTED,
-        {"G28": "return to the reference point"},
-        phase="reference",
-        letters="XYZ",
-        takes_axes=True,
-    ),
+    **owning("one-shot", "reference", {"G28": "return to the reference point"}, "XYZ"),
+    **owning("one-shot", "reference", {"G30": "return to a further reference point"}, "XYZP"),
+    **owning("one-shot", "data", {"G10": "offset data setting"}, "LPRXYZ"),
     **executed("one-shot", "", {"G53": "machine coordinates for one block"}),
+    **owning("one-shot", "shift", {"G92": "coordinate system setting"}, "XYZ"),
     **executed("length", "length", {"G43": "tool length offset"}, "H"),
     **executed("length", "length", {"G49": "tool length offset cancel"}),
+    **executed("compensation", "radius", {"G40": "cutter compensation cancel"}),
     **executed("work-offset", "work_offset", {f"G{n}": f"work offset {n - 53}" for n in range(54, 60)}),
     **executed("stop", "stop", {"M0": "program stop", "M1": "optional stop"}),
     **executed("stop", "stop", {"M2": "program end", "M30": "program end"}),
     **executed("spindle", "spindle_on", {"M3": "spindle clockwise", "M4": "spindle counter-clockwise"}),
     **executed("spindle", "spindle_off", {"M5": "spindle stop"}),
-    **executed("tool-change", "tool_change", {"M6": "tool change"}),
     **executed("mist", "coolant_on", {"M7": "mist coolant"}),
     **executed("flood", "coolant_on", {"M8": "flood coolant"}),
     **executed("mist flood", "coolant_off", {"M9": "coolant off"}),
-    **neutral("compensation", {"G40": "cutter compensation cancel"}),
-    **neutral("feed-mode", {"G94": "feed per minute"}),
-    **neutral("speed-mode", {"G97": "constant spindle speed"}),
-    **neutral("return-level", {"G98": "return to the initial level", "G99": "return to the R level"}),
+    **executed("feed-mode", "feed_mode", {"G93": "inverse time feed", "G94": "feed per minute"}),
+}
+
+#: What FANUC, Haas and LinuxCNC share beyond GRBL.
+FULL: Table = {
+    **COMMON,
+    **executed("tool-change", "tool_change", {"M6": "tool change"}),
+    **executed("compensation", "radius", {"G41": "cutter compensation left", "G42": "cutter compensation right"}, "D"),
+    **executed("feed-mode", "feed_mode", {"G95": "feed per revolution"}),
+    **executed("speed-mode", "speed_mode", {"G96": "constant surface speed"}, "D"),
+    **executed("speed-mode", "speed_mode", {"G97": "constant spindle speed"}),
+    **executed("return-level", "modes", {"G98": "return to the initial level", "G99": "return to the R level"}),
+    **owning("one-shot", "shift", {"G52": "local coordinate system"}, "XYZ"),
+    **executed("call", "call", {"M98": "subprogram call"}, "PLQK"),
+    **executed("call", "call", {"M99": "subprogram end"}, "P"),
     **noticed("override", {"M48": "overrides on", "M49": "overrides off"}),
-    **refused("compensation", {"G41": "cutter compensation left", "G42": "cutter compensation right"}),
-    **refused("feed-mode", {"G93": "inverse time feed", "G95": "feed per revolution"}),
-    **refused("speed-mode", {"G96": "constant surface speed"}),
-    **refused("one-shot", {"G10": "offset data setting", "G30": "return to a second reference point"}),
-    **refused("one-shot", {"G52": "local coordinate system", "G92": "coordinate system setting"}),
-    **refused("call", {"M98": "subprogram call", "M99": "subprogram end"}),
 }
 
 #: Canned cycles, which FANUC keeps in a group of their own and LinuxCNC among the motions.

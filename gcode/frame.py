@@ -1,72 +1,159 @@
-"""From a block's words to places: work offset, distance mode, units and tool length in one spot."""
+"""Program coordinates and machine coordinates: one affine frame in one spot.
+
+    machine = zero + M (program)
+
+`M` is None for the identity, which is what nearly every program has; then a coordinate is exactly zero + value.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass
+from typing import TypeAlias
 
-from gcode.blocks import Word
-from gcode.events import Point
-from gcode.modal import AXES, Command
-from gcode.state import State
+from gcode.events import NO_EXTRA, PLANE_AXES, Extra, Point
 
+Matrix: TypeAlias = tuple[Point, Point, Point]
+
+ORIGIN: Point = (0.0, 0.0, 0.0)
+_IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 #: Two places nearer than this are one. No control resolves better than 1e-4 mm, and sums of a program's numbers in
 #: doubles stay within 1e-9 mm over a machine's travel.
 SAME_PLACE_MM = 1e-6
+#: Relative difference of two scale factors that counts as none.
+_SAME_SCALE = 1e-9
 
 
-def work_zero(state: State, command: Command, word: Word | None = None) -> Point:
-    """Zero of the active work offset in machine coordinates, mm.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Frame:
+    """Where program coordinates lie in machine coordinates.
 
-    Raises:
-        GcodeError: where the machine's settings do not give that offset.
+    Attributes:
+        zero_mm: program zero in machine coordinates.
+        matrix: rotation, scaling and mirror image, by rows; None for none.
+        inverse: its inverse, None with it.
+        extra: zero of the further axes in machine coordinates.
     """
-    offsets = state.control.settings.offsets
-    if state.machine.wcs not in offsets:
-        known = ", ".join(offsets) or "none is given"
-        problem = f"work offset {state.machine.wcs} is not given"
-        raise command.block.error(word, "unknown-work-offset", problem, f"one of the machine's offsets: {known}")
-    return offsets[state.machine.wcs]
+
+    zero_mm: Point = ORIGIN
+    matrix: Matrix | None = None
+    inverse: Matrix | None = None
+    extra: Extra = NO_EXTRA
+
+    def to_machine(self, point: Point) -> Point:
+        """Machine coordinates of a point given in program coordinates, mm."""
+        x, y, z = point if self.matrix is None else _times(self.matrix, point)
+        return (self.zero_mm[0] + x, self.zero_mm[1] + y, self.zero_mm[2] + z)
+
+    def to_program(self, point: Point) -> Point:
+        """Program coordinates of a point given in machine coordinates, mm."""
+        x, y, z = (point[0] - self.zero_mm[0], point[1] - self.zero_mm[1], point[2] - self.zero_mm[2])
+        return (x, y, z) if self.inverse is None else _times(self.inverse, (x, y, z))
+
+    def vector_to_machine(self, vector: Point) -> Point:
+        """A difference of two program points, in machine axes."""
+        return vector if self.matrix is None else _times(self.matrix, vector)
+
+    def plane_scale(self, plane: int) -> float | None:
+        """Signed factor by which the plane's lengths grow, negative where it is turned over; None where it is uneven.
+
+        Raises nothing: a frame that tilts the plane does not exist here.
+        """
+        if self.matrix is None:
+            return 1.0
+        i, j, _ = PLANE_AXES[plane]
+        m = self.matrix
+        a, b, c, d = m[i][i], m[i][j], m[j][i], m[j][j]
+        first, second = math.hypot(a, c), math.hypot(b, d)
+        if abs(first - second) > _SAME_SCALE * max(first, second) or abs(a * b + c * d) > _SAME_SCALE * first * second:
+            return None
+        return math.copysign(first, a * d - b * c)
 
 
-def programmed_end(state: State, command: Command, *, adds_length: bool = True) -> Point:
-    """Controlled point that the axis words name, machine coordinates, mm. Axes without a word stay.
+def plus(a: Point, b: Point) -> Point:
+    """a + b."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def difference(a: Point, b: Point) -> Point:
+    """a - b."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def _times(m: Matrix, p: Point) -> Point:
+    return (
+        m[0][0] * p[0] + m[0][1] * p[1] + m[0][2] * p[2],
+        m[1][0] * p[0] + m[1][1] * p[1] + m[1][2] * p[2],
+        m[2][0] * p[0] + m[2][1] * p[1] + m[2][2] * p[2],
+    )
+
+
+def _product(a: Matrix, b: Matrix) -> Matrix:
+    columns = [_times(a, (b[0][k], b[1][k], b[2][k])) for k in range(3)]
+    x, y, z = ((columns[0][r], columns[1][r], columns[2][r]) for r in range(3))
+    return (x, y, z)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Turning:
+    """A map of program coordinates onto program coordinates: p -> centre + M (p - centre)."""
+
+    matrix: Matrix
+    inverse: Matrix
+    centre_mm: Point
+
+
+def rotation(plane: int, angle_deg: float, centre_mm: Point = ORIGIN) -> Turning:
+    """Turns a plane about a point, counter-clockwise seen from the plane's positive normal."""
+    return Turning(matrix=_rotated(plane, angle_deg), inverse=_rotated(plane, -angle_deg), centre_mm=centre_mm)
+
+
+def _rotated(plane: int, angle_deg: float) -> Matrix:
+    i, j, _ = PLANE_AXES[plane]
+    c, s = _exact_cos_sin(angle_deg)
+    m = [list(row) for row in _IDENTITY]
+    m[i][i], m[i][j], m[j][i], m[j][j] = c, -s, s, c
+    return _matrix(m)
+
+
+def _exact_cos_sin(angle_deg: float) -> tuple[float, float]:
+    """Cosine and sine, exact at multiples of a right angle, where programs expect exact coordinates."""
+    quarter, rest = divmod(angle_deg, 90.0)
+    if rest == 0.0:
+        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarter) % 4]
+    return math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
+
+
+def _matrix(rows: list[list[float]]) -> Matrix:
+    x, y, z = ((row[0], row[1], row[2]) for row in rows)
+    return (x, y, z)
+
+
+def scaling(factors: Point, centre_mm: Point = ORIGIN) -> Turning:
+    """Scales along the axes about a point; a factor of -1 is a mirror image. No factor may be 0."""
+    forward = _matrix([[factors[r] if r == k else 0.0 for k in range(3)] for r in range(3)])
+    back = _matrix([[1.0 / factors[r] if r == k else 0.0 for k in range(3)] for r in range(3)])
+    return Turning(matrix=forward, inverse=back, centre_mm=centre_mm)
+
+
+def frame_of(zero_mm: Point, turnings: tuple[Turning, ...], *, shift_mm: Point = ORIGIN, extra: Extra = NO_EXTRA) -> Frame:
+    """The frame of a zero and of maps within it.
 
     Args:
-        adds_length: with G91, whether a Z word also moves by a change of the length offset that nothing has acted on
-            yet, in dialects where it does (`Dialect.incremental_adds_length`).
+        zero_mm: zero of the work offset in machine coordinates.
+        turnings: maps of program coordinates in the order in which they act on a point.
+        shift_mm: added to program coordinates before the maps.
+        extra: zero of the further axes.
     """
-    words, modes = command.words, state.modes
-    end = list(state.position_mm)
-    for index, axis in enumerate(AXES):
-        word = words.get(axis)
-        if word is None:
-            continue
-        length = word.value * modes.unit_mm
-        if modes.absolute:
-            end[index] = work_zero(state, command, word)[index] + length
-        else:
-            end[index] += length + (modes.unmoved_length_mm if axis == "Z" and adds_length else 0.0)
-    return (end[0], end[1], end[2])
-
-
-def settled(state: State, command: Command) -> State:
-    """The state once the block's motion is made: a Z word has acted on any change of the length offset."""
-    if state.modes.unmoved_length_mm and "Z" in command.words:
-        return state.with_modes(unmoved_length_mm=0.0)
-    return state
-
-
-def moved_to(state: State, end: Point) -> State:
-    """The state with the controlled point at `end`."""
-    return replace(state, position_mm=end)
-
-
-def require_feed(state: State, command: Command) -> None:
-    """Refuses a feed motion for which no feed holds.
-
-    Raises:
-        GcodeError: where no F word, or F0, was given.
-    """
-    if state.modes.feed_mm_min <= 0.0:
-        problem = f"{state.modes.motion} without a feed rate"
-        raise command.block.error(None, "missing-feed", problem, "an F word above 0 in this block or before")
+    if not turnings:
+        x, y, z = zero_mm
+        a, b, c = shift_mm
+        return Frame(zero_mm=(x + a, y + b, z + c), extra=extra)
+    matrix, inverse, offset = _IDENTITY, _IDENTITY, shift_mm
+    for turning in turnings:
+        matrix, inverse = _product(turning.matrix, matrix), _product(inverse, turning.inverse)
+        relative = tuple(o - c for o, c in zip(offset, turning.centre_mm, strict=True))
+        turned = _times(turning.matrix, (relative[0], relative[1], relative[2]))
+        offset = tuple(c + t for c, t in zip(turning.centre_mm, turned, strict=True))  # type: ignore[assignment]
+    x, y, z = (zero + o for zero, o in zip(zero_mm, offset, strict=True))
+    return Frame(zero_mm=(x, y, z), matrix=matrix, inverse=inverse, extra=extra)

@@ -1,84 +1,33 @@
 """The interpreter: lines of a program -> events, one block after another.
 
-    lines -> `source` -> `parse` (words) -> `modal` (codes looked up) -> `phases` (`actions`, `motion`, `arcs`)
+    lines -> `program` -> `parse` (words, statements) -> `runner` (`flow`: jumps and calls)
+          -> `step`: `modal` (codes looked up) -> phases (`actions`, `offsets`, `motion`, ...) -> `compensated`
 
-`step` is the whole semantics and a pure function; `interpret` and `check` only feed it.
+`step` is the whole semantics of a block of words and a pure function; `interpret` and `check` only feed it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from gcode.actions import whole_number
-from gcode.blocks import ParsedBlock
+from gcode.bulk import PlainBatch, expand
 from gcode.dialects import FANUC, Dialect
 from gcode.errors import GcodeError, Place
-from gcode.events import Block, Event, Notice, ProgramStop
-from gcode.modal import resolve
-from gcode.parse import parse_line
-from gcode.phases import PHASES
-from gcode.recover import recovered
+from gcode.events import Event
+from gcode.foreign import recognise
+from gcode.program import Program, program_of, read_program
+from gcode.runner import Runner
 from gcode.settings import MachineSettings
-from gcode.source import after_leader, numbered, read_program
-from gcode.state import State, initial_state
+from gcode.step import step
 
+__all__ = ["check", "interpret", "interpret_file", "read_program", "run", "step"]
 
-def step(state: State, block: ParsedBlock) -> tuple[State, tuple[Event, ...]]:
-    """Executes one block.
-
-    Args:
-        state: the control before the block; it is not changed.
-        block: the block as parsed.
-
-    Returns:
-        The control after the block, and the block's events in the order of execution, a `Block` first. Lines without
-        words have none.
-
-    Raises:
-        GcodeError: where the block is refused; then `state` holds on as a whole.
-    """
-    if block.percent:
-        return _percent(state, block)
-    if block.deleted:
-        return state, (Notice(place=block.place, code="block-deleted", text="block delete: not executed"),)
-    if not block.words:
-        return state, ()
-    command = resolve(state, block)
-    if "N" in command.words or "O" in command.words:
-        state = _numbers(state, block)
-    if not state.started:
-        state = replace(state, started=True)
-    events: list[Event] = [Block(place=block.place)]
-    for phase in command.phases:
-        state, more = PHASES[phase](state, command)
-        events.extend(more)
-    return state, tuple(events)
-
-
-def _percent(state: State, block: ParsedBlock) -> tuple[State, tuple[Event, ...]]:
-    """The first percent sign starts a program, the next, or one after blocks, ends it."""
-    if not state.started:
-        return replace(state, started=True), ()
-    return replace(state, ended=True), (ProgramStop(place=block.place, optional=False, end=True),)
-
-
-def _numbers(state: State, block: ParsedBlock) -> State:
-    """Checks N and O; a second O is another program, which this one does not run into."""
-    for word in block.words:
-        if word.letter in "NO":
-            number = whole_number(block, word)
-            if word.letter == "O":
-                if state.modes.program is not None:
-                    problem = f"{word.text} begins another program before the end of O{state.modes.program}"
-                    raise block.error(word, "program-number", problem, "M2, M30 or % before it")
-                state = state.with_modes(program=number)
-    return state
+Text = str | bytes | Iterable[str] | Program
 
 
 def interpret(
-    source: str | Iterable[str],
+    source: Text,
     *,
     file: str = "<program>",
     dialect: Dialect = FANUC,
@@ -87,8 +36,8 @@ def interpret(
     """Runs a program.
 
     Args:
-        source: the program's text, or its lines (`read_program` gives those of a file); lines are read as needed.
-        file: name for places in events and errors.
+        source: the program's text, its lines, or what `read_program` gives for a file.
+        file: name for places in events and errors; that of a file is its own.
         dialect: the control whose language the program is in.
         settings: the machine at the program's start; default `MachineSettings()`.
 
@@ -98,18 +47,39 @@ def interpret(
     Raises:
         GcodeError: at the first block that is refused; the events before it have been yielded.
     """
-    return _run(source, file, dialect, settings or MachineSettings(), _raise)
+    for event in run(source, file=file, dialect=dialect, settings=settings):
+        if isinstance(event, PlainBatch):
+            yield from expand(event)
+        else:
+            yield event
 
 
 def interpret_file(
     path: Path | str, *, dialect: Dialect = FANUC, settings: MachineSettings | None = None
 ) -> Iterator[Event]:
     """Runs a program file; see `interpret`."""
-    return interpret(read_program(path), file=str(path), dialect=dialect, settings=settings)
+    return interpret(read_program(path), dialect=dialect, settings=settings)
+
+
+def run(
+    source: Text,
+    *,
+    file: str = "<program>",
+    dialect: Dialect = FANUC,
+    settings: MachineSettings | None = None,
+) -> Iterator[Event | PlainBatch]:
+    """Runs a program as `interpret` does, with runs of plain straight motions left together for speed.
+
+    Yields:
+        Events, and `PlainBatch`es that stand for the events of many blocks.
+    """
+    program = _program(source, file)
+    _refuse_foreign(program)
+    yield from Runner(program, dialect, settings or MachineSettings(), _raise).run()
 
 
 def check(
-    source: str | Iterable[str],
+    source: Text,
     *,
     file: str = "<program>",
     dialect: Dialect = FANUC,
@@ -120,44 +90,37 @@ def check(
     Arguments as for `interpret`.
 
     Returns:
-        All refusals in the order of the program; empty for a program that runs.
+        The refusals in the order of execution, `Limits.errors` at most; empty for a program that runs.
     """
+    settings = settings or MachineSettings()
     errors: list[GcodeError] = []
     try:
-        for _ in _run(source, file, dialect, settings or MachineSettings(), errors.append):
-            pass
+        program = _program(source, file)
+        _refuse_foreign(program)
+        for _ in Runner(program, dialect, settings, errors.append).run():
+            if len(errors) >= settings.limits.errors:
+                break
     except GcodeError as error:
         errors.append(error)
-    return errors
+    return errors[: settings.limits.errors]
 
 
-def _run(
-    source: str | Iterable[str],
-    file: str,
-    dialect: Dialect,
-    settings: MachineSettings,
-    refuse: Callable[[GcodeError], None],
-) -> Iterator[Event]:
-    """The events of a program; refused blocks go to `refuse`, and if that returns, the program goes on."""
-    leader, places = after_leader(numbered(source, file), dialect)
-    if leader:
-        text = f"lines 1 to {leader.line}, before the first %, are not executed"
-        yield Notice(place=leader, code="leader", text=text)
-    state = initial_state(dialect, settings)
-    place = Place(file=file, line=1)
-    for place in places:
-        block = None
-        try:
-            block = parse_line(place, dialect, block_delete=settings.block_delete)
-            state, events = step(state, block)
-        except GcodeError as error:
-            refuse(error)
-            state = recovered(state, block, error) if block else state
-            continue
-        yield from events
-        if state.ended:
-            return
-    yield Notice(place=place, code="no-program-end", text="the program ends without M2, M30 or %")
+def _program(source: Text, file: str) -> Program:
+    return source if isinstance(source, Program) else program_of(source, file)
+
+
+def _refuse_foreign(program: Program) -> None:
+    """Refuses a text that another kind of control, or none, understands.
+
+    Raises:
+        GcodeError: where its first part says so.
+    """
+    foreign = recognise(program.head)
+    if foreign is not None:
+        text = program.head.splitlines()[foreign.line - 1] if program.head else ""
+        place = Place(file=program.file, line=foreign.line, column=foreign.column, text=text)
+        problem = f"{foreign.marker}: {foreign.reason}"
+        raise GcodeError(place, "foreign-control", problem, "a program of this dialect")
 
 
 def _raise(error: GcodeError) -> None:

@@ -10,12 +10,16 @@ from typing import NamedTuple
 from gcode.blocks import ParsedBlock, Word
 from gcode.codes import CodeRule, Status
 from gcode.dialects import Dialect
-from gcode.state import State
+from gcode.state import AXES, State
 
-AXES = "XYZ"
 #: Phases that a plain word (no G or M) asks for.
 _PHASE_OF_LETTER: Mapping[str, str] = {"F": "feed", "S": "speed", "T": "tool"}
-_MOTION_GROUP = "motion"
+#: Phases that a word asks for only where it is free to stand in any block.
+_PHASE_OF_FREE_LETTER: Mapping[str, str] = {"H": "length", "D": "radius"}
+#: Groups whose codes take the axis words of the blocks that follow.
+_MOTION_GROUPS = frozenset({"motion", "cycle"})
+#: Codes after whose motions a corner may be cut or rounded.
+_CORNERED = frozenset({"G1", "G2", "G3"})
 
 
 class Use(NamedTuple):
@@ -60,19 +64,26 @@ def resolve(state: State, block: ParsedBlock) -> Command:
     """Looks up and checks what a block asks for; nothing is executed.
 
     Raises:
-        GcodeError: for an unknown or refused code or letter, two codes of one modal group, a word that nothing in
-            the block takes, and axis words that two codes want or none does.
+        GcodeError: for an unknown or refused code or letter, two codes of one modal group, a letter given twice, a
+            word that nothing in the block takes, and axis words that two codes want or none does.
     """
     dialect = state.control.dialect
     uses: list[Use] = []
     words: dict[str, Word] = {}
+    repeated: tuple[Word, Word] | None = None
     for word in block.words:
         if word.letter in "GM":
             uses.append(Use(_rule(dialect, block, word), word))
-        else:
-            words[word.letter] = word
+            continue
+        if word.letter in words and repeated is None:
+            repeated = (words[word.letter], word)
+        words[word.letter] = word
     if len(uses) > 1:
         _check_groups(block, uses)
+    if repeated and not any(use.rule.letters == "*" for use in uses):
+        first, second = repeated
+        problem = f"{second.letter} is given twice: {first.text} and {second.text}"
+        raise block.error(second, "repeated-word", problem, f"one {second.letter} in a block")
     moves = _claim_words(state, block, uses, words)
     return Command(block, tuple(uses), words, _phases(dialect, uses, words, moves))
 
@@ -110,9 +121,11 @@ def _claim_words(state: State, block: ParsedBlock, uses: list[Use], words: Mappi
     owner: Use | None = None
     explicit: Use | None = None
     for use in uses:
-        if _MOTION_GROUP in use.rule.groups:
+        if not _MOTION_GROUPS.isdisjoint(use.rule.groups):
             motion, explicit = use.rule, use
             continue
+        if use.rule.letters == "*":
+            return False
         claimed += use.rule.letters
         owner = use if use.rule.takes_axes else owner
     if owner and explicit and not dialect.one_shot_with_motion:
@@ -120,7 +133,8 @@ def _claim_words(state: State, block: ParsedBlock, uses: list[Use], words: Mappi
         raise block.error(explicit.word, "axis-conflict", problem, "one of them in a block")
     rest = [word for letter, word in words.items() if letter not in claimed]
     if owner is None and motion.letters:
-        rest, left = [word for word in rest if word.letter not in motion.letters], rest
+        corners = dialect.corner_letters if motion.code in _CORNERED else ()
+        left, rest = rest, [w for w in rest if w.letter not in motion.letters and w.letter not in corners]
         _check_rest(state, block, uses, rest)
         return len(left) > len(rest)
     _check_rest(state, block, uses, rest)
@@ -135,8 +149,8 @@ def _check_rest(state: State, block: ParsedBlock, uses: list[Use], rest: list[Wo
     if word.letter in dialect.refused_letters:
         problem = f"{word.text}: {dialect.refused_letters[word.letter]}, which is not supported"
         raise block.error(word, "unsupported-word", problem)
-    if word.letter in AXES and not any(use.rule.takes_axes for use in uses):
-        problem = f"{word.text} without a motion code"
+    if word.letter in AXES + dialect.extra_axes and not any(use.rule.takes_axes for use in uses):
+        problem = f"{word.text} without a motion code that takes it"
         raise block.error(word, "axis-without-motion", problem, "G0, G1, G2 or G3")
     raise block.error(word, "unused-word", f"{word.text} belongs to no code in this block or active")
 
@@ -145,8 +159,9 @@ def _phases(dialect: Dialect, uses: list[Use], words: Mapping[str, Word], moves:
     """What the block asks for, in the dialect's order."""
     asked = {_PHASE_OF_LETTER[letter] for letter in words if letter in _PHASE_OF_LETTER}
     asked.update(use.rule.phase for use in uses)
-    if "H" in words:
-        asked.add("length")
+    for letter, phase in _PHASE_OF_FREE_LETTER.items():
+        if letter in words and (letter in dialect.free_letters or phase in asked):
+            asked.add(phase)
     if moves:
         asked.add("motion")
     if len(asked) == 1:

@@ -1,4 +1,4 @@
-"""Straight motions: G0, G1, the legs of G28, and G53; and the place that a block's axis words name."""
+"""Straight motions: G0, G1, G53, spindle-synchronised ones; and which function makes which motion."""
 
 from __future__ import annotations
 
@@ -7,27 +7,40 @@ from collections.abc import Mapping
 
 from gcode.actions import Action, Result
 from gcode.arcs import arc
-from gcode.blocks import Word
 from gcode.events import LinearMotion, Point
-from gcode.frame import SAME_PLACE_MM, moved_to, programmed_end, require_feed, settled
-from gcode.modal import AXES, Command
-from gcode.state import State
+from gcode.holes import drill
+from gcode.modal import Command
+from gcode.reference import return_to_reference
+from gcode.splines import cubic_spline, quadratic_spline
+from gcode.state import AXES, State
+from gcode.straight import straight
+from gcode.targets import extra_end, moved_to, programmed_end, settled
 
 
 def move(state: State, command: Command) -> Result:
     """The motion that a block's axis words make with the active motion code."""
+    if state.modes.surface_speed is not None:
+        state = _at_surface_speed(state)
     if command.code("G53"):
         return _machine_move(state, command)
-    return _MOTIONS[state.modes.motion](state, command)
+    return _MOTIONS.get(state.modes.motion, drill)(state, command)
+
+
+def _at_surface_speed(state: State) -> State:
+    """The spindle speed that gives the surface speed at the distance from X0 where the motion starts."""
+    speed, limit = state.modes.surface_speed or 0.0, state.modes.surface_speed_limit
+    radius = abs(state.program_mm[0])
+    rpm = math.inf if radius == 0.0 else 1000.0 * speed / (2.0 * math.pi * radius)
+    rpm = min(rpm, limit) if limit else rpm
+    return state.with_machine(spindle_rpm=rpm if math.isfinite(rpm) else state.machine.spindle_rpm)
 
 
 def _rapid(state: State, command: Command) -> Result:
-    return _straight(state, command, programmed_end(state, command), rapid=True)
+    return straight(state, command, programmed_end(state, command), extra=extra_end(state, command), rapid=True)
 
 
 def _feed(state: State, command: Command) -> Result:
-    require_feed(state, command)
-    return _straight(state, command, programmed_end(state, command), rapid=False)
+    return straight(state, command, programmed_end(state, command), extra=extra_end(state, command), rapid=False)
 
 
 def _machine_move(state: State, command: Command) -> Result:
@@ -39,11 +52,11 @@ def _machine_move(state: State, command: Command) -> Result:
         raise command.block.error(word, "g53-incremental", "G53 while G91 is active", "G90")
     if not dialect.machine_moves_rapid and modes.motion not in ("G0", "G1"):
         raise command.block.error(word, "g53-motion", f"G53 while {modes.motion} is active", "G0 or G1")
+    if state.path is not None and state.path.compensates:
+        raise command.block.error(word, "g53-compensation", "G53 while cutter compensation is on", "G40 before it")
     rapid = dialect.machine_moves_rapid or modes.motion == "G0"
-    if not rapid:
-        require_feed(state, command)
     end = state.tip_of(_replaced(state.gauge_mm, command, modes.unit_mm))
-    return _straight(settled(state, command), command, end, rapid=rapid)
+    return straight(settled(state, command), command, end, rapid=rapid)
 
 
 def _replaced(point: Point, command: Command, unit_mm: float) -> Point:
@@ -55,39 +68,52 @@ def _replaced(point: Point, command: Command, unit_mm: float) -> Point:
     return (x, y, z)
 
 
-def return_to_reference(state: State, command: Command) -> Result:
-    """G28: the named axes go by way of the programmed point to the reference point, at rapid."""
-    block, dialect = command.block, state.control.dialect
-    named: Mapping[str, Word] = {axis: command.words[axis] for axis in AXES if axis in command.words}
-    if not named and not dialect.reference_all_axes:
-        word = command.of_phase("reference")[0].word
-        raise block.error(word, "missing-axis", f"{word.text} names no axis", "at least one of X, Y, Z")
-    first = programmed_end(state, command, adds_length=False)
-    via, to_via = _straight(state, command, first, rapid=True)
-    home = state.control.settings.home_mm
-    x, y, z = (
-        there if axis in named or not named else here
-        for axis, there, here in zip(AXES, home, via.gauge_mm, strict=True)
-    )
-    there, to_home = _straight(via, command, state.tip_of((x, y, z)), rapid=True)
-    return settled(there, command), to_via + to_home
-
-
-def _straight(state: State, command: Command, end: Point, *, rapid: bool) -> Result:
-    """A straight motion to `end` (controlled point, machine coordinates); none where that is where the tool is."""
-    state = settled(state, command)
-    if math.dist(state.position_mm, end) <= SAME_PLACE_MM:
-        return state, ()
+def _synchronised(state: State, command: Command) -> Result:
+    """G33: K of path to a turn of the spindle."""
+    end, feed = programmed_end(state, command), _pitch_feed(state, command)
     event = LinearMotion(
         place=command.block.place,
         state=state.machine,
         start_mm=state.position_mm,
         end_mm=end,
-        rapid=rapid,
-        feed_mm_min=0.0 if rapid else state.modes.feed_mm_min,
+        rapid=False,
+        feed_mm_min=feed,
     )
-    return moved_to(state, end), (event,)
+    return moved_to(settled(state, command), end), (event,)
 
 
-_MOTIONS: Mapping[str, Action] = {"G0": _rapid, "G1": _feed, "G2": arc, "G3": arc}
+def _rigid_tap(state: State, command: Command) -> Result:
+    """G33.1: into the hole at K a turn, and back out to the start with the spindle reversed."""
+    start, end = state.position_mm, programmed_end(state, command)
+    feed = _pitch_feed(state, command)
+    place, there = command.block.place, state.machine
+    back = state.with_machine(spindle_direction=-there.spindle_direction).machine
+    down = LinearMotion(
+        place=place, state=there, start_mm=start, end_mm=end, rapid=False, feed_mm_min=feed, tapping=True
+    )
+    up = LinearMotion(place=place, state=back, start_mm=end, end_mm=start, rapid=False, feed_mm_min=feed, tapping=True)
+    return settled(state, command), (down, up)
+
+
+def _pitch_feed(state: State, command: Command) -> float:
+    word = command.words.get("K")
+    if word is None or word.value == 0.0:
+        problem = f"{state.modes.motion} without a pitch"
+        raise command.block.error(word, "missing-word", problem, "K and the length of path to a turn")
+    if not state.machine.spindle_direction:
+        problem = f"{state.modes.motion} while the spindle stands"
+        raise command.block.error(None, "spindle-stopped", problem, "M3 or M4 before it")
+    return abs(word.value) * state.modes.unit_mm * state.machine.spindle_rpm
+
+
+_MOTIONS: Mapping[str, Action] = {
+    "G0": _rapid,
+    "G1": _feed,
+    "G2": arc,
+    "G3": arc,
+    "G5": cubic_spline,
+    "G5.1": quadratic_spline,
+    "G33": _synchronised,
+    "G33.1": _rigid_tap,
+}
 MOTION_ACTIONS: Mapping[str, Action] = {"motion": move, "reference": return_to_reference}

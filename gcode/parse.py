@@ -1,112 +1,261 @@
-"""Text of one line -> `ParsedBlock`: a lexer that knows letters, numbers, comments, slash and percent, and no more."""
+"""Text of one line -> `ParsedBlock`s: a lexer that knows letters, numbers, comments, slash, percent and semicolon."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from gcode.blocks import ParsedBlock, Word
 from gcode.dialects import FANUC, Dialect
 from gcode.errors import GcodeError, Place
+from gcode.expressions import EvaluationError, MacroLanguage, Source, parse_operand
+from gcode.parse_statements import parse_assignment, parse_statement
 
 #: Longest line that is read, characters; controls stop at a few hundred.
 MAX_LINE = 4096
 #: Largest number of a word, in the program's units: far beyond any machine, far below where doubles lose a nanometre.
 MAX_VALUE = 1e9
 
-_TOKEN = re.compile(
-    r"[ \t]*(?:(?P<letter>,?[ \t]*[A-Za-z])[ \t]*(?P<number>[+-]?[0-9. \t]*)"
-    r"|\((?P<comment>[^)]*)\)|;(?P<tail>.*)|/(?P<slash>[1-9]?))"
-)
+#: A block of words alone, with comments behind it or without: what most lines are.
+_PLAIN = re.compile(r"(?:[ \t]*[A-Za-z][ \t]*[+-]?(?:\d+\.?\d*|\.\d+))*[ \t]*", re.ASCII)
+_PLAIN_WORD = re.compile(r"[ \t]*(([A-Za-z])[ \t]*([+-]?(?:\d+\.?\d*|\.\d+)))", re.ASCII)
 _CONTROL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f]")
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)", re.ASCII)
-_WORDS_ONLY = re.compile(r"(?:[ \t]*[A-Za-z][ \t]*[+-]?[ \t]*[0-9.][0-9. \t]*)+")
-_KEYWORD = re.compile(
-    r"IF|THEN|ELSE|WHILE|DO|END|GOTO|SUB|CALL|REPEAT|RETURN|BREAK|CONTINUE|POPEN|PCLOS|DPRNT|BPRNT|SETVN", re.IGNORECASE
-)
-_BLANKS = str.maketrans("", "", " \t")
-_REPEATABLE = frozenset("GM")
+_NUMBER = re.compile(r"[+-]?[0-9.]*")
+_GOOD_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)", re.ASCII)
+_KEYWORD = re.compile(r"IF|THEN|ELSE|WHILE|DO|END|GOTO|SUB|CALL|REPEAT|RETURN|BREAK|CONTINUE|POPEN|PCLOS|DPRNT|SETVN")
 _CONTROL_NAMES = {"\x00": "NUL", "\r": "carriage return", "\x1a": "substitute (Ctrl-Z)"}
 
 
 def parse_line(place: Place, dialect: Dialect = FANUC, *, block_delete: bool = False) -> ParsedBlock:
+    """Takes one line apart that holds one block; see `parse_blocks`."""
+    return parse_blocks(place, dialect, block_delete=block_delete)[0]
+
+
+def parse_blocks(place: Place, dialect: Dialect = FANUC, *, block_delete: bool = False) -> tuple[ParsedBlock, ...]:
     """Takes one line apart.
 
     Letters may be lower case, and blanks may stand anywhere or nowhere. Nothing is said about what the words mean.
 
     Args:
         place: the line (``place.text``, without its line end) and where it stands.
-        dialect: decides what a semicolon is.
-        block_delete: True where the block delete switch is on; then a line with a leading slash is not read.
+        dialect: decides what a semicolon is, and which macro language there is.
+        block_delete: True where the block delete switch is on; then a block with a leading slash is not read.
+
+    Returns:
+        The line's blocks, at least one: more where a semicolon ends a block and another one follows.
 
     Raises:
         GcodeError: for text that is no block: control characters, an unclosed comment, a letter without a number,
-            a number out of range, a letter given twice, macro language, and lines over `MAX_LINE` characters.
+            a number out of range, a broken expression or statement, and lines over `MAX_LINE` characters.
     """
     text = place.text
+    if len(text) <= MAX_LINE and _PLAIN.fullmatch(text):
+        return (ParsedBlock(place=place, words=_plain_words(place)),)
     _check_characters(place)
     if text.lstrip().startswith("%"):
-        return _percent(place)
+        return (_percent(place),)
+    if text.lstrip().startswith("$"):
+        column = text.index("$") + 1
+        problem = f"{text.strip()[:24]} is a command to a controller, not a block of a program"
+        raise GcodeError(_at(place, column), "unsupported-command", problem, "a letter and its number, or a comment")
+    blocks = []
+    for number, segment in enumerate(_segments(place, dialect)):
+        if segment.characters or segment.comments or not number:
+            blocks.append(_block(place, dialect, segment, block_delete=block_delete))
+    return tuple(blocks)
+
+
+def _plain_words(place: Place) -> tuple[Word, ...]:
+    words = []
+    for match in _PLAIN_WORD.finditer(place.text):
+        whole, letter, number = match.groups()
+        value = float(number)
+        if not abs(value) <= MAX_VALUE:
+            raise _too_large(place, match.start(1), letter.upper() + number)
+        words.append(Word(letter.upper(), value, letter.upper() + number, match.start(1) + 1))
+    return tuple(words)
+
+
+@dataclass(slots=True)
+class _Segment:
+    """A block's characters without blanks and comments, with their columns."""
+
+    characters: list[str] = field(default_factory=list)
+    columns: list[int] = field(default_factory=list)
+    comments: list[str] = field(default_factory=list)
+
+
+def _segments(place: Place, dialect: Dialect) -> list[_Segment]:
+    """Splits a line at its semicolons, where they end blocks, and takes comments and blanks out."""
+    text, position = place.text, 0
+    segments = [_Segment()]
+    while position < len(text):
+        character, current = text[position], segments[-1]
+        if character == "(":
+            end = text.find(")", position)
+            if end < 0:
+                raise GcodeError(_at(place, position + 1), "unclosed-comment", "a comment without its end", ")")
+            current.comments.append(text[position + 1 : end])
+            position = end
+        elif character == ";" and not dialect.semicolon_ends_block:
+            current.comments.append(text[position + 1 :])
+            break
+        elif character == ";":
+            segments.append(_tail(place, position))
+            if segments[-1].comments:
+                break
+        elif character not in " \t":
+            current.characters.append(character.upper())
+            current.columns.append(position + 1)
+        position += 1
+    return segments
+
+
+def _tail(place: Place, position: int) -> _Segment:
+    """What follows a semicolon that ends a block: the next block, or text that nobody can take for one."""
+    tail = place.text[position + 1 :]
+    first = tail.split(";", 1)[0].strip()
+    if first and not _reads_as_block(first):
+        return _Segment(comments=[tail.strip()])
+    return _Segment()
+
+
+def _reads_as_block(text: str) -> bool:
+    """True for text whose first two characters could begin a block: a letter and its number, a variable, a keyword."""
+    bare = re.sub(r"\([^)]*\)", "", text).replace(" ", "").replace("\t", "").upper()
+    if not bare:
+        return True
+    return bool(re.match(r"/?\d?(?:,?[A-Z][-+]?[\d.#\[]|#|IF\[|WHILE\[|GOTO|DO\d|END\d|O<)", bare))
+
+
+def _block(place: Place, dialect: Dialect, segment: _Segment, *, block_delete: bool) -> ParsedBlock:
+    source = Source("".join(segment.characters), tuple(segment.columns), dialect.macro)
+    try:
+        return _read(place, source, tuple(segment.comments), block_delete=block_delete)
+    except EvaluationError as error:
+        raise GcodeError(_at(place, error.column or 1), error.code, error.problem, error.expected) from None
+
+
+def _read(place: Place, source: Source, comments: tuple[str, ...], *, block_delete: bool) -> ParsedBlock:
     words: list[Word] = []
-    comments: list[str] = []
-    position, stop = 0, len(text.rstrip())
-    while position < stop:
-        match = _TOKEN.match(text, position)
-        if match is None:
-            raise _unexpected(place, position)
-        kind = match.lastgroup
-        if kind == "number":
-            _append(words, _word(place, match), place)
-        elif kind == "slash":
-            _check_slash(place, match.start("slash") - 1, words)
+    position, deleted = _head(place, source, words, block_delete=block_delete)
+    if deleted:
+        return ParsedBlock(place=place, deleted=True)
+    parsed = parse_statement(source, position, lambda start: _then(place, source, start))
+    if parsed is not None:
+        statement, end = parsed
+        if end < len(source.text):
+            problem = f"{source.text[end:][:24]} behind a statement"
+            raise GcodeError(_at(place, source.column(end)), "text-after-statement", problem, "the end of the block")
+        return ParsedBlock(place=place, words=tuple(words), statement=statement, comments=comments)
+    return _words(place, source, position, words, comments)
+
+
+def _then(place: Place, source: Source, start: int) -> ParsedBlock:
+    """The block behind THEN."""
+    return _words(place, source, start, [], ())
+
+
+def _head(place: Place, source: Source, words: list[Word], *, block_delete: bool) -> tuple[int, bool]:
+    """A slash and a block number, in either order; whether the block is deleted."""
+    position = 0
+    while position < len(source.text):
+        if source.at(position, "/"):
+            position += 2 if source.text[position + 1 : position + 2].isdigit() else 1
             if block_delete:
-                return ParsedBlock(place=place, deleted=True)
+                return position, True
+        elif source.at(position, "N") and source.text[position + 1 : position + 2].isdigit() and not words:
+            word, position = _word(place, source, position)
+            words.append(word)
         else:
-            comments.append(match[kind] if kind else "")
-            if kind == "tail" and dialect.semicolon_ends_block:
-                _check_tail(place, match)
-        position = match.end()
-    return ParsedBlock(place=place, words=tuple(words), comments=tuple(comments))
+            break
+    return position, False
 
 
-def _word(place: Place, match: re.Match[str]) -> Word:
-    column = match.start("letter") + 1
-    letter = match["letter"].translate(_BLANKS).upper()
-    number = match["number"].translate(_BLANKS)
-    if not _NUMBER.fullmatch(number):
-        raise _bad_number(place, match, letter, number)
-    value = float(number)
-    if not abs(value) <= MAX_VALUE:
-        shown = number if len(number) <= 24 else number[:24] + "..."
-        problem = f"{letter}{shown} is out of range"
-        raise GcodeError(_at(place, column), "number-too-large", problem, f"at most {MAX_VALUE:.0f} in size")
-    return Word(letter, value, letter + number, column)
-
-
-def _bad_number(place: Place, match: re.Match[str], letter: str, number: str) -> GcodeError:
-    """The error for a letter whose number is missing, broken, or a piece of macro language."""
-    following = place.text[match.end() : match.end() + 1]
-    column = match.start("letter") + 1
-    keyword = _KEYWORD.match(place.text, match.start("letter"))
-    if number in ("", "+", "-"):
-        if following and following in "#[<=":
-            return _macro(place, column, f"{letter}{number}{following}")
-        if keyword:
-            return _macro(place, column, keyword[0].upper())
-        shown = f"{letter}{number}"
-        return GcodeError(_at(place, column), "missing-number", f"{shown} has no number", f"{letter} and a number")
-    return GcodeError(
-        _at(place, column), "bad-number", f"{letter}{number} is no number", "digits with at most one point"
+def _words(
+    place: Place, source: Source, position: int, words: list[Word], comments: tuple[str, ...]
+) -> ParsedBlock:
+    assignments = []
+    name: str | None = None
+    while position < len(source.text):
+        if source.at(position, "#") and source.language.name != "none":
+            assignment, position = parse_assignment(source, position)
+            assignments.append(assignment)
+        elif source.at(position, "/"):
+            problem = "block delete / inside a block"
+            raise GcodeError(_at(place, source.column(position)), "block-delete-place", problem, "/ at its start")
+        elif source.at(position, "<") or (source.at(position, "O<") and not source.language.named):
+            start = position + source.text[position].count("O")
+            end = source.text.find(">", start)
+            if end < 0:
+                raise _unexpected(place, source, position)
+            name, position = source.text[start + 1 : end], end + 1
+        else:
+            word, position = _word(place, source, position)
+            words.append(word)
+    return ParsedBlock(
+        place=place,
+        words=tuple(words),
+        assignments=tuple(assignments),
+        comments=comments,
+        name=name,
+        plain=not assignments and all(word.expression is None for word in words),
     )
 
 
-def _append(words: list[Word], word: Word, place: Place) -> None:
-    if word.letter not in _REPEATABLE:
-        for other in words:
-            if other.letter == word.letter:
-                problem = f"{word.letter} is given twice: {other.text} and {word.text}"
-                raise GcodeError(_at(place, word.column), "repeated-word", problem, f"one {word.letter} in a block")
-    words.append(word)
+def _word(place: Place, source: Source, position: int) -> tuple[Word, int]:
+    start = position
+    if source.at(position, ","):
+        position += 1
+    if source.at(position, ":") and position == 0:
+        letter = "O"
+    else:
+        letter = source.text[position : position + 1]
+        if not ("A" <= letter <= "Z" and letter.isascii()):
+            raise _unexpected(place, source, start)
+    letter = source.text[start:position] + letter
+    position += 1
+    number = _NUMBER.match(source.text, position)
+    digits = number[0] if number else ""
+    end = position + len(digits)
+    if _GOOD_NUMBER.fullmatch(digits):
+        value = float(digits)
+        if not abs(value) <= MAX_VALUE:
+            raise _too_large(place, source.column(start) - 1, letter + digits)
+        return Word(letter, value, letter + digits, source.column(start)), end
+    return _worked_out(place, source, start, letter, position, digits)
+
+
+def _worked_out(
+    place: Place, source: Source, start: int, letter: str, position: int, digits: str
+) -> tuple[Word, int]:
+    """A word whose number is an expression."""
+    following = source.text[position + len(digits) : position + len(digits) + 1]
+    column = source.column(start)
+    signed = digits in ("", "+", "-")
+    if signed and source.language.name != "none" and (following in ("#", "[") or _function_follows(source, position)):
+        expression, end = parse_operand(source, position)
+        return Word(letter, 0.0, letter + expression.text, column, expression), end
+    if signed:
+        keyword = _KEYWORD.match(source.text, start)
+        if following and following in "#[<=":
+            raise _macro(place, column, f"{letter}{digits}{following}", source.language)
+        if keyword:
+            raise _macro(place, column, keyword[0], source.language)
+        shown = f"{letter}{digits}"
+        raise GcodeError(_at(place, column), "missing-number", f"{shown} has no number", f"{letter} and a number")
+    problem = f"{letter}{digits} is no number"
+    raise GcodeError(_at(place, column), "bad-number", problem, "digits with at most one point")
+
+
+def _function_follows(source: Source, position: int) -> bool:
+    return bool(re.match(r"[+-]?[A-Z]{2,5}\[", source.text[position : position + 8]))
+
+
+def _too_large(place: Place, index: int, shown: str) -> GcodeError:
+    shown = shown if len(shown) <= 25 else shown[:25] + "..."
+    problem = f"{shown} is out of range"
+    return GcodeError(_at(place, index + 1), "number-too-large", problem, f"at most {MAX_VALUE:.0f} in size")
 
 
 def _percent(place: Place) -> ParsedBlock:
@@ -129,32 +278,18 @@ def _check_characters(place: Place) -> None:
         raise GcodeError(_at(place, found.start() + 1), "control-character", problem, "printable text")
 
 
-def _check_slash(place: Place, index: int, words: list[Word]) -> None:
-    if any(word.letter != "N" for word in words):
-        problem = "block delete / inside a block"
-        raise GcodeError(_at(place, index + 1), "block-delete-place", problem, "/ at the start of the block")
-
-
-def _check_tail(place: Place, match: re.Match[str]) -> None:
-    """Refuses words after a semicolon that ends the block: as a comment they would be skipped in silence."""
-    if _WORDS_ONLY.fullmatch(match["tail"].strip()):
-        problem = f"words after the end of the block: {match['tail'].strip()}"
-        raise GcodeError(_at(place, match.start("tail") + 1), "text-after-semicolon", problem, "one block in a line")
-
-
-def _unexpected(place: Place, position: int) -> GcodeError:
+def _unexpected(place: Place, source: Source, position: int) -> GcodeError:
     """The error for a character that begins no word and no comment."""
-    rest = place.text[position:].lstrip()
-    column = len(place.text) - len(rest) + 1
-    if rest[0] == "(":
-        return GcodeError(_at(place, column), "unclosed-comment", "a comment without its end", ") in the same line")
-    if rest[0] in "#[=<":
-        return _macro(place, column, rest[0])
-    problem = f"unexpected {rest[0]!r}"
+    character, column = source.text[position], source.column(position)
+    if character in "#[=<":
+        return _macro(place, column, character, source.language)
+    problem = f"unexpected {character!r}"
     return GcodeError(_at(place, column), "unexpected-character", problem, "a letter and its number, or a comment")
 
 
-def _macro(place: Place, column: int, shown: str) -> GcodeError:
+def _macro(place: Place, column: int, shown: str, language: MacroLanguage) -> GcodeError:
+    if language.name != "none":
+        return GcodeError(_at(place, column), "bad-statement", f"{shown} is not understood", "a word or a statement")
     problem = f"{shown} is macro language (variables, expressions, jumps), which is not supported"
     return GcodeError(_at(place, column), "unsupported-macro", problem, "a plain number after each letter")
 

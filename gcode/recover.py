@@ -10,10 +10,10 @@ from dataclasses import replace
 
 from gcode.blocks import ParsedBlock
 from gcode.errors import GcodeError
-from gcode.frame import moved_to, programmed_end, settled
 from gcode.modal import Command, resolve
-from gcode.phases import PHASES
 from gcode.state import State
+from gcode.step import PHASES
+from gcode.targets import moved_to, programmed_end, settled
 
 #: Feed that is taken to hold once a missing one has been reported, mm/min.
 _ASSUMED_FEED = 1.0
@@ -22,7 +22,7 @@ _ASSUMED_FEED = 1.0
 def recovered(state: State, block: ParsedBlock, error: GcodeError) -> State:
     """The state to go on from after `error` refused `block`; `state` is that before the block."""
     if error.code == "missing-feed":
-        state = state.with_modes(feed_mm_min=_ASSUMED_FEED)
+        state = state.with_modes(feed=_ASSUMED_FEED)
     command = _without_refused_words(state, block)
     if command is None:
         return state

@@ -12,6 +12,12 @@ from typing import Literal
 from gcode.events import Point
 
 _ORIGIN: Point = (0.0, 0.0, 0.0)
+#: Additional work offsets (G54.1 P) that a control has at most.
+ADDITIONAL_OFFSETS = 300
+#: Work offsets in the order in which G10 L2 P counts them.
+NUMBERED_OFFSETS = (*(f"G{n}" for n in range(54, 60)), *(f"G59.{n}" for n in (1, 2, 3)))
+#: Names of all work offsets.
+ALL_OFFSETS = (*NUMBERED_OFFSETS, *(f"G54.1 P{n}" for n in range(1, ADDITIONAL_OFFSETS + 1)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,14 +83,15 @@ class MachineSettings:
     """A machine as it stands when the program starts. All lengths are mm, in machine coordinates.
 
     Attributes:
-        offsets: work offsets by name (``G54``, ``G59.1``, ``G54.1 P7``): the place of each work zero. Only those
-            given, and those that the program sets by G10, may be used.
+        offsets: work offsets by name (`ALL_OFFSETS`): the place of each work zero; by default all lie at the machine's
+            zero. Only those given, and those that the program sets by G10, may be used.
         rotations_deg: rotation about z of each work offset, counter-clockwise; those missing are 0.
         external_offset_mm: added to every work offset (the external or common offset).
         home_mm: gauge point at the reference point that G28 goes to.
         reference_points_mm: gauge points of the further reference points (G30 P2, P3, P4) by number.
         start_mm: gauge point when the program starts.
-        tools: tool offset table: rows by number, which H, D or T name.
+        tools: tool offset table: rows by number, which H, D or T name. None where it is not known: then every length
+            and radius counts as 0, and a notice says so.
         tool: number of the tool in the spindle when the program starts, 0 for none.
         variables: common variables or persistent parameters by number, as they stand at the start.
         search_path: folders where subprogram files are looked for, after that of the program itself.
@@ -102,13 +109,13 @@ class MachineSettings:
         ValueError: for a value that is not finite, or out of its range, naming it.
     """
 
-    offsets: Mapping[str, Point] = field(default_factory=lambda: {"G54": _ORIGIN})
+    offsets: Mapping[str, Point] = field(default_factory=lambda: dict.fromkeys(ALL_OFFSETS, _ORIGIN))
     rotations_deg: Mapping[str, float] = field(default_factory=dict)
     external_offset_mm: Point = _ORIGIN
     home_mm: Point = _ORIGIN
     reference_points_mm: Mapping[int, Point] = field(default_factory=dict)
     start_mm: Point = _ORIGIN
-    tools: Mapping[int, ToolOffset] = field(default_factory=dict)
+    tools: Mapping[int, ToolOffset] | None = None
     tool: int = 0
     variables: Mapping[int, float] = field(default_factory=dict)
     search_path: tuple[Path, ...] = ()
@@ -126,7 +133,8 @@ class MachineSettings:
         self._freeze("rotations_deg", {n: _length(f"rotations_deg[{n!r}]", v) for n, v in self.rotations_deg.items()})
         points = {n: _point(f"reference_points_mm[{n}]", v) for n, v in self.reference_points_mm.items()}
         self._freeze("reference_points_mm", points)
-        self._freeze("tools", dict(self.tools))
+        if self.tools is not None:
+            self._freeze("tools", dict(self.tools))
         self._freeze("variables", {n: _length(f"variables[{n}]", v) for n, v in self.variables.items()})
         for name in ("external_offset_mm", "home_mm", "start_mm"):
             object.__setattr__(self, name, _point(name, getattr(self, name)))

@@ -1,0 +1,129 @@
+"""What a control's language is, as a frozen table.
+
+Differences between controls are fields and rows, each with the rule it stands for; the code that interprets asks
+these and never for a dialect's name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
+
+from gcode.codes import Table
+from gcode.cycles import CycleRules
+from gcode.expressions import MacroLanguage
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArcTolerance:
+    """How far the radii at the two ends of an arc with a programmed centre may differ.
+
+    Attributes:
+        absolute_mm: a difference up to this is always accepted.
+        relative: a larger one is accepted up to this part of the radius...
+        largest_mm: ...and up to this length.
+    """
+
+    absolute_mm: float
+    relative: float = 0.0
+    largest_mm: float = 0.0
+
+    def accepts(self, start_radius_mm: float, end_radius_mm: float) -> bool:
+        """True where an arc from one radius to the other is run."""
+        difference = abs(start_radius_mm - end_radius_mm)
+        relative = self.relative * max(start_radius_mm, end_radius_mm)
+        return difference <= self.absolute_mm or difference <= min(relative, self.largest_mm)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DwellWord:
+    """A word that gives the time of G4.
+
+    Attributes:
+        seconds: seconds for one unit of its number.
+        pointed: seconds for one unit of a number written with a decimal point; None where a point is refused.
+    """
+
+    seconds: float
+    pointed: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dialect:
+    """A control, as far as its language goes.
+
+    Attributes:
+        name: as users and job files write it.
+        codes: its G and M codes.
+        order: phases of one block in the order of execution.
+        free_letters: letters that may stand in any block.
+        refused_letters: letters that are understood and not supported, with what they are.
+        extra_axes: letters of further axes whose positions are kept and told.
+        corner_letters: letters that cut or round the corner between two feed motions.
+        increment_letters: letters whose numbers count least increments where they have no decimal point and the
+            machine is set so.
+        power_on_motion: motion code that holds before the program names one; ``G80`` for none.
+        macro: its variables, expressions and jumps.
+        cycles: its canned cycles, None for none.
+        compensation: how cutter compensation finds the tool's path.
+        compensation_defaults_to_tool: G41/G42 without D take the radius of the tool in the spindle.
+        data_kinds: what G10 writes for each L.
+        additional_by_l20: G10 L20 writes additional work offsets; else the offset under which the tool is where the
+            words say.
+        tool_defaults_to_present: M6 without any T puts in the tool that is in; else it is refused.
+        file_end_returns: a subprogram's file that ends without M99 returns; else it is refused.
+        subprograms: O words begin programs that M98 calls.
+        packed_calls: M98 P31000 calls O1000 three times.
+        dwell: words of G4.
+        length_word_is_modal: an H without G43 changes the active length offset, and G43 without H uses the last one.
+        length_defaults_to_tool: G43 without H, or with H0, takes the entry of the tool in the spindle.
+        length_moves_all_axes: a tool offset has x and y besides its length.
+        incremental_adds_length: with G91 a Z word after a change of the length offset moves by the change too.
+        one_shot_with_motion: G0 to G3 beside G28 only sets the mode; else such a block is refused.
+        machine_moves_rapid: G53 always moves at rapid; else G0 or G1 must be active and decides.
+        reference_all_axes: G28 without axes returns all of them; else it is refused.
+        shift_is_rotated: G92 and G52 share one shift, and it lies inside the work offset's rotation.
+        semicolon_ends_block: a semicolon is an end of block, so words behind it are the next block.
+        leader: text before the first percent sign is a leader to be skipped, wherever that percent sign is.
+        arc_tolerance: for arcs with a programmed centre.
+        radius_tolerance_mm: by how much an R may be shorter than half the chord.
+    """
+
+    name: str
+    codes: Table
+    order: tuple[str, ...]
+    free_letters: str
+    refused_letters: Mapping[str, str]
+    extra_axes: str
+    corner_letters: tuple[str, ...]
+    increment_letters: frozenset[str]
+    power_on_motion: str
+    macro: MacroLanguage
+    cycles: CycleRules | None
+    compensation: Literal["linuxcnc", "fanuc"]
+    compensation_defaults_to_tool: bool
+    data_kinds: Mapping[int, str]
+    additional_by_l20: bool
+    tool_defaults_to_present: bool
+    file_end_returns: bool
+    subprograms: bool
+    packed_calls: bool
+    dwell: Mapping[str, DwellWord]
+    length_word_is_modal: bool
+    length_defaults_to_tool: bool
+    length_moves_all_axes: bool
+    incremental_adds_length: bool
+    one_shot_with_motion: bool
+    machine_moves_rapid: bool
+    reference_all_axes: bool
+    shift_is_rotated: bool
+    semicolon_ends_block: bool
+    leader: bool
+    arc_tolerance: ArcTolerance
+    radius_tolerance_mm: float
+
+    def __post_init__(self) -> None:
+        for name in ("codes", "refused_letters", "dwell", "data_kinds"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))

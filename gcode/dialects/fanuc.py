@@ -1,0 +1,118 @@
+"""FANUC series 0i, 16i, 18i, 21i, 30i for machining centres."""
+
+from __future__ import annotations
+
+from gcode.codes import CYCLES, FULL, Table, executed, neutral, noticed, owning, refused
+from gcode.cycles import FANUC_CYCLES
+from gcode.dialects.base import ArcTolerance, Dialect, DwellWord
+from gcode.expressions import FANUC_MACRO
+
+FIVE_AXIS = "five-axis machining"
+#: Words of every cycle: hole, levels, peck, dwell or shift, repeats.
+CYCLE_LETTERS = "XYZRQPIJKL"
+
+CODES: Table = {
+    **FULL,
+    **owning("one-shot", "dwell", {"G4": "dwell"}, "PX"),
+    **owning("one-shot", "data", {"G10": "offset data setting"}, "LPRXYZQIJABCDHTNK"),
+    **neutral("data", {"G11": "offset data setting cancel"}),
+    **executed("length", "length", {"G44": "tool length offset, negative"}, "H"),
+    **executed("spindle", "spindle_off", {"M19": "spindle orientation"}, "RPQ"),
+    **executed("cycle", "modes", {"G80": "canned cycle cancel"}),
+    **executed("cycle", "modes", CYCLES, CYCLE_LETTERS),
+    **executed("polar", "turning_off", {"G15": "polar coordinates cancel"}),
+    **executed("polar", "turning", {"G16": "polar coordinates"}),
+    **executed("scaling", "turning_off", {"G50": "scaling cancel"}),
+    **owning("scaling", "turning", {"G51": "scaling"}, "XYZPIJK"),
+    **executed("mirror", "turning_off", {"G50.1": "mirror image cancel"}, "XYZ"),
+    **owning("mirror", "turning", {"G51.1": "mirror image"}, "XYZ"),
+    **executed("rotation", "turning_off", {"G69": "coordinate rotation cancel"}),
+    **owning("rotation", "turning", {"G68": "coordinate rotation"}, "XYZR"),
+    **executed("work-offset", "work_offset", {f"G{n}": f"work offset {n - 53}" for n in range(54, 60)}, "P"),
+    **executed("work-offset", "work_offset", {"G54.1": "additional work offset"}, "P"),
+    **owning("one-shot", "shift", {"G92": "coordinate system setting, spindle speed limit"}, "XYZ"),
+    **owning("one-shot", "shift", {"G92.1": "workpiece coordinate system preset"}, "XYZ"),
+    **owning("one-shot", "reference", {"G27": "reference point check"}, "XYZ"),
+    **owning("one-shot", "reference", {"G29": "return from the reference point"}, "XYZ"),
+    **owning("one-shot", "reference", {"G60": "single-direction positioning"}, "XYZ"),
+    **owning("call", "call", {"G65": "macro call", "G66": "modal macro call", "G66.1": "modal macro call"}, "*"),
+    **executed("call", "call", {"G67": "modal macro call cancel"}),
+    **executed("call", "call", {"M198": "subprogram call from external memory"}, "PL"),
+    **neutral("polar-interpolation", {"G13.1": "polar coordinate interpolation cancel"}),
+    **noticed("exact-stop", {"G9": "exact stop in this block"}),
+    **noticed("path", {"G61": "exact stop", "G62": "corner override", "G63": "tapping mode", "G64": "cutting mode"}),
+    **noticed("look-ahead", {"G5": "high-speed cycle cutting", "G8": "look-ahead control"}, "P"),
+    **noticed("look-ahead", {"G5.1": "AI contour control"}, "PQR"),
+    **noticed("stroke-check", {"G23": "stored stroke check off"}),
+    **noticed("speed-check", {"G25": "spindle speed check off"}),
+    **executed("rigid-tap", "rigid_tapping", {"M29": "rigid tapping mode"}),
+    **noticed("clamp", {"M10": "clamp", "M11": "unclamp"}),
+    **refused("rotation", {"G68.2": f"tilted working plane: {FIVE_AXIS}", "G68.3": f"tilted working plane: {FIVE_AXIS}"}),
+    **refused("polar-interpolation", {"G12.1": "polar coordinate interpolation"}),
+    **refused("length", {"G43.1": f"tool axis length offset: {FIVE_AXIS}"}),
+    **refused("length", {"G43.4": f"tool centre point control: {FIVE_AXIS}"}),
+    **refused("length", {"G43.5": f"tool centre point control: {FIVE_AXIS}"}),
+    **refused("compensation", {f"G4{n}.{k}": f"3-D cutter compensation: {FIVE_AXIS}" for n in (1, 2) for k in range(2, 7)}),
+    **refused("motion", {"G2.2": "involute", "G3.2": "involute", "G6.2": "NURBS", "G33": "threading"}),
+    **refused("motion", {"G2.3": "exponential", "G3.3": "exponential", "G2.4": "3-D arc", "G3.4": "3-D arc"}),
+    **refused("one-shot", {"G7.1": "cylindrical interpolation", "G107": "cylindrical interpolation"}),
+    **refused("one-shot", {"G31": "skip function: where it ends depends on a measurement"}),
+    **refused("one-shot", {"G37": "automatic tool length measurement: it depends on a measurement"}),
+    **refused("one-shot", {"G53.1": f"tool axis direction control: {FIVE_AXIS}"}),
+    **refused("one-shot", {f"G{n}": "tool offset in one block" for n in range(45, 49)}),
+    **refused("stroke-check", {"G22": "stored stroke check on"}),
+    **refused("speed-check", {"G26": "spindle speed check on"}),
+}
+
+ROTARY = {letter: f"{letter} is a rotary axis" for letter in "ABC"}
+PARALLEL = {letter: f"{letter} is a parallel axis" for letter in "UVW"}
+
+FANUC = Dialect(
+    name="fanuc",
+    codes=CODES,
+    order=(
+        *("feed_mode", "modes", "feed", "tool", "tool_change", "speed_mode", "speed", "spindle_on", "rigid_tapping"),
+        *("coolant_on", "turning_off", "work_offset", "shift", "length", "radius", "data", "turning"),
+        *("notice", "dwell", "reference", "motion", "spindle_off", "coolant_off", "call", "stop"),
+    ),
+    free_letters="NOFSTHD",
+    refused_letters={**ROTARY, **PARALLEL},
+    extra_axes="",
+    corner_letters=(",C", ",R"),
+    increment_letters=frozenset(["X", "Y", "Z", "I", "J", "K", "R", "Q", ",C", ",R"]),
+    power_on_motion="G0",
+    macro=FANUC_MACRO,
+    cycles=FANUC_CYCLES,
+    compensation="fanuc",
+    compensation_defaults_to_tool=False,
+    data_kinds={
+        2: "zero",
+        20: "zero-here",
+        10: "length",
+        11: "length-wear",
+        12: "radius",
+        13: "radius-wear",
+        1: "length",
+        3: "ignored",
+        50: "ignored",
+        52: "ignored",
+    },
+    additional_by_l20=True,
+    tool_defaults_to_present=False,
+    file_end_returns=False,
+    subprograms=True,
+    packed_calls=True,
+    dwell={"P": DwellWord(seconds=0.001, pointed=None), "X": DwellWord(seconds=1.0, pointed=1.0)},
+    length_word_is_modal=True,
+    length_defaults_to_tool=False,
+    length_moves_all_axes=False,
+    incremental_adds_length=True,
+    one_shot_with_motion=True,
+    machine_moves_rapid=True,
+    reference_all_axes=False,
+    shift_is_rotated=False,
+    semicolon_ends_block=True,
+    leader=True,
+    arc_tolerance=ArcTolerance(absolute_mm=0.05),
+    radius_tolerance_mm=0.05,
+)

@@ -1,0 +1,41 @@
+"""GRBL 1.1: a controller without macros, cycles, cutter compensation and tool changes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from gcode.codes import COMMON, CYCLES, Table, executed, neutral, noticed, owning, refused
+from gcode.dialects.linuxcnc import LINUXCNC
+from gcode.expressions import NO_MACRO
+
+CODES: Table = {
+    **{code: rule for code, rule in COMMON.items() if code not in ("G43", "G40", "G90.1")},
+    **executed("motion", "modes", {"G80": "motion cancel"}),
+    **executed("one-shot", "dwell", {"G4": "dwell"}, "P"),
+    **executed("one-shot", "reference", {"G28.1": "store the reference point"}),
+    **executed("one-shot", "reference", {"G30.1": "store the second reference point"}),
+    **owning("one-shot", "reference", {"G30": "return to the second reference point"}, "XYZ"),
+    **executed("one-shot", "shift", {"G92.1": "shift to 0"}),
+    **owning("length", "length", {"G43.1": "dynamic tool length offset"}, "Z"),
+    **neutral("compensation", {"G40": "cutter compensation cancel"}),
+    **noticed("path", {"G61": "exact path"}),
+    **noticed("override", {"M56": "parking motion override"}, "P"),
+    **refused("motion", {f"G38.{n}": "probing: where it ends depends on a measurement" for n in (2, 3, 4, 5)}),
+    **refused("motion", CYCLES),
+    **refused("tool-change", {"M6": "tool change"}),
+}
+
+GRBL = replace(
+    LINUXCNC,
+    name="grbl",
+    codes=CODES,
+    refused_letters={letter: f"{letter} is an axis that GRBL has not" for letter in "ABCUVW"},
+    extra_axes="",
+    power_on_motion="G0",
+    macro=NO_MACRO,
+    cycles=None,
+    data_kinds={2: "zero", 20: "zero-here"},
+    subprograms=False,
+    length_moves_all_axes=False,
+    shift_is_rotated=False,
+)

@@ -1,0 +1,51 @@
+"""Haas mills: FANUC's language with further codes and some rules of its own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from gcode.codes import Table, executed, noticed, refused
+from gcode.cycles import HAAS_CYCLES
+from gcode.dialects.base import DwellWord
+from gcode.dialects.fanuc import CODES as FANUC_CODES
+from gcode.dialects.fanuc import FANUC, FIVE_AXIS
+
+_NOT_HERE = frozenset(
+    ["G5", "G5.1", "G8", "G11", "G13.1", "G23", "G25", "G62", "G63", "G66.1", "G90.1", "G91.1", "G92.1", "M198"]
+)
+
+CODES: Table = {
+    **{code: rule for code, rule in FANUC_CODES.items() if code not in _NOT_HERE},
+    **executed("call", "call", {"M97": "call of a local subprogram"}, "PL"),
+    **executed("work-offset", "work_offset", {"G154": "additional work offset"}, "P"),
+    **executed("work-offset", "work_offset", {f"G{n}": f"work offset {n - 103}" for n in range(110, 130)}),
+    **executed("tool-change", "tool_change", {"M16": "tool change"}),
+    **noticed("look-ahead", {"G103": "limit of block look-ahead"}, "P"),
+    **noticed("look-ahead", {"G187": "accuracy control"}, "PE"),
+    **noticed("clamp", {"M10": "rotary brake on", "M11": "rotary brake off", "M12": "brake on", "M13": "brake off"}),
+    **noticed("conveyor", {"M31": "chip conveyor on", "M32": "chip conveyor back", "M33": "chip conveyor stop"}),
+    **noticed("coolant-spout", {"M34": "spout down", "M35": "spout up", "M36": "pallet", "M50": "pallet change"}),
+    **noticed("gear", {"M41": "low gear", "M42": "high gear"}),
+    **noticed("air", {"M73": "tool air on", "M74": "tool air off", "M83": "air on", "M84": "air off"}),
+    **noticed("coolant-through", {"M88": "coolant through the spindle on", "M89": "coolant through the spindle off"}),
+    **noticed("door", {"M80": "door open", "M81": "door close"}),
+    **refused("one-shot", {"G12": "circular pocket clockwise", "G13": "circular pocket counter-clockwise"}),
+    **refused("one-shot", {"G35": "automatic tool measurement", "G36": "automatic work measurement"}),
+    **refused("one-shot", {"G47": "text engraving", "G150": "general pocket milling"}),
+    **refused("one-shot", {"G70": "bolt circle", "G71": "bolt arc", "G72": "bolt line"}),
+    **refused("mirror", {"G100": "mirror image cancel", "G101": "mirror image"}),
+    **refused("length", {"G143": f"five-axis length offset: {FIVE_AXIS}", "G234": f"tool centre point: {FIVE_AXIS}"}),
+    **refused("rotation", {"G254": f"dynamic work offset: {FIVE_AXIS}", "G255": f"dynamic work offset: {FIVE_AXIS}"}),
+    **refused("one-shot", {"G107": "cylindrical mapping", "G141": "3-D cutter compensation"}),
+    **refused("input", {"M75": "set G35/G136 reference", "M96": "jump on an input", "M109": "user input"}),
+    **refused("one-shot", {"G136": "automatic work offset measurement"}),
+}
+
+HAAS = replace(
+    FANUC,
+    name="haas",
+    codes=CODES,
+    cycles=HAAS_CYCLES,
+    packed_calls=False,
+    dwell={"P": DwellWord(seconds=0.001, pointed=1.0), "X": DwellWord(seconds=1.0, pointed=1.0)},
+)

@@ -1,0 +1,106 @@
+"""The whole semantics of one block of words, as a pure function."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+from gcode.actions import ACTIONS, Action, whole_number
+from gcode.blocks import ParsedBlock
+from gcode.calls import CALL_ACTIONS
+from gcode.compensated import RADIUS_ACTIONS, through
+from gcode.data import DATA_ACTIONS
+from gcode.events import Block, Event, Notice, ProgramStop
+from gcode.modal import Command, resolve
+from gcode.motion import MOTION_ACTIONS
+from gcode.offsets import OFFSET_ACTIONS
+from gcode.state import State
+from gcode.turnings import TURNING_ACTIONS
+
+#: All phases of a block by name: what `Dialect.order` puts in order.
+PHASES: Mapping[str, Action] = MappingProxyType(
+    {
+        **ACTIONS,
+        **OFFSET_ACTIONS,
+        **DATA_ACTIONS,
+        **TURNING_ACTIONS,
+        **RADIUS_ACTIONS,
+        **MOTION_ACTIONS,
+        **CALL_ACTIONS,
+    }
+)
+
+
+def step(state: State, block: ParsedBlock, *, first_of_program: bool = False) -> tuple[State, tuple[Event, ...]]:
+    """Executes one block.
+
+    Args:
+        state: the control before the block; it is not changed.
+        block: the block as parsed, its words plain numbers.
+        first_of_program: the block is the first of its program, so that its O word names the program.
+
+    Returns:
+        The control after the block, and the block's events in the order of execution, a `Block` first. Lines without
+        words have none.
+
+    Raises:
+        GcodeError: where the block is refused; then `state` holds on as a whole.
+    """
+    if block.percent:
+        return _percent(state, block)
+    if block.deleted:
+        return state, (Notice(place=block.place, code="block-deleted", text="block delete: not executed"),)
+    if not block.words:
+        return state, ()
+    command = resolve(state, block)
+    if "N" in command.words or "O" in command.words:
+        state = _numbers(state, block, first_of_program=first_of_program)
+    if not state.started:
+        state = replace(state, started=True)
+    return _run_phases(state, command)
+
+
+def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...]]:
+    first = Block(place=command.block.place)
+    events: list[Event] = []
+    if state.path is None:
+        events.append(first)
+    else:
+        state, ready = through(state, None, (first,))
+        events.extend(ready)
+    for phase in command.phases:
+        state, more = PHASES[phase](state, command)
+        if phase == "radius":
+            events.extend(more)
+        elif state.path is None and not _asks_corner(command):
+            events.extend(more)
+        else:
+            state, ready = through(state, command if phase == "motion" else None, more)
+            events.extend(ready)
+    return state, tuple(events)
+
+
+def _asks_corner(command: Command) -> bool:
+    return ",C" in command.words or ",R" in command.words
+
+
+def _percent(state: State, block: ParsedBlock) -> tuple[State, tuple[Event, ...]]:
+    """The first percent sign starts a program, the next, or one after blocks, ends it."""
+    if not state.started:
+        return replace(state, started=True), ()
+    state, events = through(state, None, (ProgramStop(place=block.place, optional=False, end=True),))
+    return replace(state, ended=True), events
+
+
+def _numbers(state: State, block: ParsedBlock, *, first_of_program: bool) -> State:
+    """Checks N and O; a second O is another program, which this one does not run into."""
+    for word in block.words:
+        if word.letter in "NO":
+            number = whole_number(block, word)
+            if word.letter == "O":
+                if state.modes.program is not None and not first_of_program:
+                    problem = f"{word.text} begins another program before the end of O{state.modes.program}"
+                    raise block.error(word, "program-number", problem, "M2, M30 or % before it")
+                state = state.with_modes(program=number)
+    return state
