@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,8 @@ from gcode.events import PLANE_AXES, ArcMotion, Motion, Point
 
 #: Most chords that one arc is stepped into.
 MOST_CHORDS = 100_000
+#: Steps towards the turning points of a spiral; each divides the error by 5 even where r' is half of r.
+_STEPS = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +43,6 @@ class _Spiral:
     def radius_mm(self, swept_rad: float) -> float:
         """Radius where an angle has been swept."""
         return self.start_mm + self.growth * swept_rad
-
-    def coordinate(self, swept_rad: float, phase_rad: float) -> float:
-        """Coordinate from the centre along the direction at an angle in the plane, mm."""
-        return self.radius_mm(swept_rad) * math.cos(self.start_rad + swept_rad - phase_rad)
 
 
 def _spiral(arc: ArcMotion) -> _Spiral:
@@ -83,17 +82,23 @@ def extremes_mm(motion: Motion) -> tuple[Point, Point]:
     return (low[0], low[1], low[2]), (high[0], high[1], high[2])
 
 
-def _turning_points(spiral: _Spiral, phase_rad: float) -> list[float]:
-    """Coordinates along one direction where the path turns back: at most the first and last two of each side."""
+def _turning_points(spiral: _Spiral, phase_rad: float) -> Iterator[float]:
+    """Coordinates along one direction where the path turns back; of those of many turns, the outermost of each side."""
     least, most = sorted((0.0, spiral.sweep_rad))
     first = math.ceil((spiral.start_rad + least - phase_rad) / math.pi)
     last = math.floor((spiral.start_rad + most - phase_rad) / math.pi)
-    found = []
-    for half_turn in {*range(first, min(first + 2, last + 1)), *range(max(first, last - 1), last + 1)}:
-        swept = half_turn * math.pi + phase_rad - spiral.start_rad
-        lead = math.atan2(spiral.growth, max(spiral.radius_mm(swept), 1e-12))
-        found.append(spiral.coordinate(min(max(swept + lead, least), most), phase_rad))
-    return found
+    for half_turn in {*range(first - 1, first + 2), *range(last - 1, last + 2)}:
+        swept = _turned_back(spiral, half_turn * math.pi + phase_rad - spiral.start_rad)
+        if least <= swept <= most:
+            yield spiral.radius_mm(swept) * math.cos(spiral.start_rad + swept - phase_rad)
+
+
+def _turned_back(spiral: _Spiral, circular_rad: float) -> float:
+    """Angle swept where a coordinate turns back, near that of a circle: there tan(angle from the axis) = r'/r."""
+    swept, growth = circular_rad, spiral.growth
+    for _ in range(_STEPS if growth else 0):
+        swept = circular_rad + math.atan2(growth, max(spiral.radius_mm(swept), 1e-12))
+    return swept
 
 
 def points_mm(motion: Motion, tolerance_mm: float) -> NDArray[np.float64]:

@@ -65,11 +65,11 @@ def check(
 
 
 def _print_text(found: Findings, notices: bool) -> None:
-    from gcode.cli.say import harmless
+    from gcode.cli.underline import harmless, underlined
     from gcode.cli.words import plural
 
     for error in found.errors:
-        typer.echo(f"{harmless(error.underlined())}\n")
+        typer.echo(f"{underlined(error)}\n")
     if notices:
         for group in found.grouped():
             typer.echo(harmless(group))

@@ -29,6 +29,7 @@ def run(arguments: Sequence[str]) -> int:
     """
     from gcode.cli.app import app
     from gcode.cli.say import UnusableFileError, fail
+    from gcode.cli.underline import underlined
 
     try:
         app(args=list(arguments), prog_name="gcode")
@@ -38,7 +39,7 @@ def run(arguments: Sequence[str]) -> int:
         fail(str(error))
         return exit_codes.USAGE
     except GcodeError as error:
-        fail(error.underlined())
+        fail(underlined(error))
     except MemoryError:
         fail("not enough memory")
     return exit_codes.MISTAKES

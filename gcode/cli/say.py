@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from gcode.cli import exit_codes
+from gcode.cli.underline import harmless
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -24,12 +25,6 @@ WIDTH = 100
 _EVERY_S = 0.1
 _EVERY_EVENTS = 256
 _SIGPIPE = 13
-#: Characters that would act on a terminal, and what is shown for them, one for one so that columns stay.
-_HARMLESS = {
-    **{code: chr(0x2400 + code) for code in range(0x20) if chr(code) not in "\t\n"},
-    0x7F: "\u2421",
-    **dict.fromkeys((*range(0x80, 0xA0), *range(0x202A, 0x202F), *range(0x2066, 0x206A)), "\ufffd"),
-}
 
 
 class UnusableFileError(Exception):
@@ -43,23 +38,9 @@ def results() -> Console:
     return Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
 
 
-def harmless(text: str) -> str:
-    """A text that does nothing to a terminal but be shown: a program may hold any byte."""
-    return text.translate(_HARMLESS)
-
-
 def fail(message: str) -> None:
     """Say what is wrong."""
-    _say("error:", typer.colors.RED, message)
-
-
-def note(message: str) -> None:
-    """Say something that is no mistake."""
-    _say("notice:", typer.colors.YELLOW, message)
-
-
-def _say(head: str, colour: str, message: str) -> None:
-    typer.secho(head, fg=colour, bold=True, err=True, nl=False)
+    typer.secho("error:", fg=typer.colors.RED, bold=True, err=True, nl=False)
     typer.echo(f" {harmless(message)}", err=True)
 
 
