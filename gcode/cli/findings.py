@@ -12,10 +12,10 @@ from typing import Any
 
 from gcode.cli.machine import Setup
 from gcode.errors import GcodeError, Place
-from gcode.events import Event, Notice
-from gcode.interpret import check, interpret_file
+from gcode.events import Notice
+from gcode.interpret import check, read_program, run
 from gcode.motion_json import call_objects
-from gcode.source import read_program
+from gcode.program import Program
 
 #: So many lines of a notice's group are named.
 _MOST_LINES = 8
@@ -78,15 +78,17 @@ def findings(file: Path, setup: Setup) -> Findings:
     reason = _unreadable(file)
     if reason is not None:
         return Findings(file=str(file), unreadable=f"{file}: {reason}")
-    errors = check(read_program(file), file=str(file), dialect=setup.dialect, settings=setup.settings)
-    notices = tuple(event for event in _events(file, setup) if isinstance(event, Notice))
-    return Findings(file=str(file), errors=tuple(errors), notices=notices)
+    program = read_program(file)
+    errors = check(program, dialect=setup.dialect, settings=setup.settings)
+    return Findings(file=str(file), errors=tuple(errors), notices=tuple(_notices(program, setup)))
 
 
-def _events(file: Path, setup: Setup) -> Iterator[Event]:
-    """The events of a program up to its first mistake."""
+def _notices(program: Program, setup: Setup) -> Iterator[Notice]:
+    """The notices of a program up to its first mistake."""
     with contextlib.suppress(GcodeError):
-        yield from interpret_file(file, dialect=setup.dialect, settings=setup.settings)
+        for event in run(program, dialect=setup.dialect, settings=setup.settings):
+            if isinstance(event, Notice):
+                yield event
 
 
 def _unreadable(file: Path) -> str | None:

@@ -64,7 +64,7 @@ UnitOption = Annotated[
     MachineUnit | None,
     typer.Option(
         "--machine-units",
-        help="Unit of the tables, and of programs until they say G20 or G21; that of the settings if not given, or mm.",
+        help="Unit of .tbl and .var files; that of the settings if not given, or mm.",
         show_default=False,
     ),
 ]
@@ -109,12 +109,11 @@ def setup_of(
     from gcode.tables import read_parameters, read_settings, read_tool_table
 
     made = _read(lambda: read_settings(settings)) if settings is not None else MachineSettings()
-    if machine_units is not None:
-        made = replace(made, units=machine_units.value)
+    units = machine_units.value if machine_units is not None else made.units
     if parameters is not None:
-        made = _read(lambda: read_parameters(parameters, made.units)).applied_to(made)
+        made = _read(lambda: read_parameters(parameters, units)).applied_to(made)
     if tool_table is not None:
-        made = replace(made, tools=_read(lambda: read_tool_table(tool_table, made.units)))
+        made = replace(made, tools=_read(lambda: read_tool_table(tool_table, units)))
     made = replace(
         made,
         block_delete=made.block_delete or block_delete,

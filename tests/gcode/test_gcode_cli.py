@@ -81,20 +81,32 @@ def test_motions_before_a_mistake_are_printed(cli: Cli, tmp_path: Path) -> None:
 
 def test_tables_settings_and_options_meet_in_the_motions(cli: Cli, tmp_path: Path) -> None:
     files = {
-        "p.ngc": "T1 M6\nG43\nG55 G0 X1 Z2\n/G0 X5\nM2\n",
+        "p.ngc": "T1 M6\nG43 H1\nG55 G0 X1 Z2\n/G0 X5\nM2\n",
         "t.tbl": "T1 P1 Z0.5\n",
         "p.var": "5241 10\n5243 -1\n",
-        "s.toml": "tool = 0\n",
+        "s.toml": 'units = "inch"\nblock_delete = false\n',
     }
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     tables = ("--tool-table", tmp_path / "t.tbl", "--parameters", tmp_path / "p.var", "--settings", tmp_path / "s.toml")
-    options = ("--dialect", "linuxcnc", "--machine-units", "inch", "--block-delete")
+    options = ("--dialect", "linuxcnc", "--block-delete")
     code, out, _ = cli("motions", tmp_path / "p.ngc", *tables, *options)
     made = [json.loads(line) for line in out.splitlines()]
     assert code == 0
     assert [m["end"] for m in made] == [[pytest.approx(11 * 25.4), 0.0, pytest.approx(25.4)]]
     assert (made[0]["wcs"], made[0]["h"]) == ("G55", 1)
+
+
+def test_the_machines_unit_is_that_of_the_tables_and_not_of_the_program(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.ngc").write_text("T1 M6\nG43 H1\nG0 Z2\nM2\n")
+    (tmp_path / "t.tbl").write_text("T1 P1 Z0.5\n")
+    options = ("--dialect", "linuxcnc", "--tool-table", tmp_path / "t.tbl", "--machine-units", "inch")
+    _, out, _ = cli("motions", tmp_path / "p.ngc", *options)
+    (made,) = (json.loads(line) for line in out.splitlines())
+    assert made["end"] == [0.0, 0.0, 2.0]
+    (tmp_path / "p.ngc").write_text("T1 M6\nG43 H1\nG53 G0 Z20\nM2\n")
+    _, out, _ = cli("motions", tmp_path / "p.ngc", *options)
+    assert json.loads(out)["end"] == [0.0, 0.0, pytest.approx(20.0 - 12.7)]
 
 
 def test_a_clean_program_passes_the_check(cli: Cli, nc: Path) -> None:
