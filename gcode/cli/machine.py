@@ -45,7 +45,7 @@ ToolTableOption = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.tbl|.toml",
-        help="Tool table: LinuxCNC's, in the machine's unit, or [tools.N] in mm. Without one, lengths and radii are 0.",
+        help="Tool table: LinuxCNC's, in the machine's unit, or TOML in mm. Without one, lengths and radii are 0.",
         show_default=False,
     ),
 ]
