@@ -1,0 +1,125 @@
+"""Many lines of plain words at once: a regular expression finds them, array arithmetic reads their numbers.
+
+A plain line is empty, or holds words N, G0, G1, X, Y, Z, F with plain numbers in any order, and nothing else.
+The numbers are the doubles that `float` gives for their text, to the last bit.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+_BLANKS = rb"[ \t]{0,9}+"
+#: Nine digits before the point stay below the largest number that a word may have.
+_UNSIGNED = rb"(?:[0-9]{1,9}+(?:\.[0-9]{0,30}+)?+|\.[0-9]{1,30}+)"
+_WORDS = (
+    rb"[XYZxyz]" + _BLANKS + rb"[+-]?+" + _UNSIGNED,
+    rb"[Nn]" + _BLANKS + rb"[0-9]{1,9}+(?!\.)",
+    rb"[Gg]" + _BLANKS + rb"0?+[01](?![0-9.])",
+    rb"[Ff]" + _BLANKS + rb"\+?+" + _UNSIGNED,
+)
+#: Every quantifier is possessive or of one character, so that the time grows with the text and not faster.
+_LINE = _BLANKS + rb"(?:(?:" + rb"|".join(_WORDS) + rb")" + _BLANKS + rb")*+\r?+\n"
+
+#: A whole number of so many digits is a double, and so is the power of ten that it is divided by.
+_EXACT_DIGITS = 15
+_POWERS = np.array([float(10**k) for k in range(64)])
+#: Counts of digits, letters and line ends, packed so that one running sum counts all three.
+_FIELD = 21
+_MASK = (1 << _FIELD) - 1
+_COUNTS = np.zeros(256, dtype=np.int64)
+_COUNTS[ord("0") : ord("9") + 1] = 1
+_COUNTS[ord("A") : ord("Z") + 1] = _COUNTS[ord("a") : ord("z") + 1] = 1 << _FIELD
+_COUNTS[ord("\n")] = 1 << 2 * _FIELD
+#: Clears the bit that tells a small letter from a capital.
+_CAPITAL = np.uint8(0xDF)
+#: Longest text that the packed counts hold.
+MAX_BYTES = _MASK
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WordArrays:
+    """The words of consecutive plain lines, in their order.
+
+    Attributes:
+        letter: address letters, capital, as character codes.
+        line: line of each, counted from 0.
+        value: numbers, in the program's units.
+        pointed: True where the number was written with a decimal point.
+    """
+
+    letter: NDArray[np.uint8]
+    line: NDArray[np.int64]
+    value: NDArray[np.float64]
+    pointed: NDArray[np.bool_]
+
+
+def plain_end(buffer: bytes, offset: int, max_lines: int) -> int:
+    """Where the plain lines that begin at `offset` end: behind the line end of the last of at most `max_lines`.
+
+    A last line without a line end is not one of them.
+    """
+    match = _lines(max_lines).match(buffer, offset, min(len(buffer), offset + MAX_BYTES))
+    return offset if match is None else buffer.rfind(b"\n", offset, match.end()) + 1
+
+
+@lru_cache(maxsize=16)
+def _lines(most: int) -> re.Pattern[bytes]:
+    return re.compile(rb"(?:" + _LINE + rb"){1,%d}+" % most)
+
+
+def read_words(buffer: bytes, offset: int, end: int) -> WordArrays:
+    """Takes plain lines apart.
+
+    Args:
+        buffer: the program's text.
+        offset: where the first line begins.
+        end: behind the last line's end, as `plain_end` tells it.
+    """
+    text = np.frombuffer(buffer, np.uint8, end - offset, offset)
+    seen = _COUNTS[text].cumsum()
+    at = np.flatnonzero(text >= ord("A"))
+    before = seen[at]
+    digits = text - np.uint8(ord("0"))
+    mantissa, ends = _whole_numbers(digits[digits < 10].astype(np.float64), before & _MASK)
+    points = seen[text == ord(".")]
+    decimals = np.zeros(at.size, dtype=np.int64)
+    decimals_of = (points >> _FIELD & _MASK) - 1
+    decimals[decimals_of] = ends[decimals_of] - (points & _MASK)
+    value = mantissa / _POWERS[decimals]
+    minus = (seen[text == ord("-")] >> _FIELD & _MASK) - 1
+    value[minus] = -value[minus]
+    _read_long(buffer, offset, end, at, np.diff(ends, prepend=0), value)
+    pointed = np.zeros(at.size, dtype=np.bool_)
+    pointed[decimals_of] = True
+    return WordArrays(text[at] & _CAPITAL, before >> 2 * _FIELD, value, pointed)
+
+
+def _whole_numbers(
+    digits: NDArray[np.float64], begins: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The digits of each word as a whole number, and how many digits there are up to its end."""
+    ends = np.append(begins[1:], digits.size)[: begins.size]
+    if not begins.size:
+        return np.empty(0), ends
+    places = np.repeat(ends - 1, ends - begins) - np.arange(digits.size)
+    return np.add.reduceat(_POWERS[places] * digits, begins), ends
+
+
+def _read_long(
+    buffer: bytes,
+    offset: int,
+    end: int,
+    at: NDArray[np.intp],
+    counts: NDArray[np.int64],
+    value: NDArray[np.float64],
+) -> None:
+    """Reads the numbers with more digits than exact arithmetic has room for, one by one, into `value`."""
+    for index in np.flatnonzero(counts > _EXACT_DIGITS).tolist():
+        stop = int(at[index + 1]) if index + 1 < at.size else end - offset
+        word = buffer[offset + int(at[index]) + 1 : offset + stop]
+        value[index] = float(word.split(b"\n", 1)[0])
