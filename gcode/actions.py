@@ -32,6 +32,8 @@ _PLANE_OF_CODE: Mapping[str, int] = {"G17": 17, "G18": 18, "G19": 19}
 _BASE_MOTIONS = frozenset({"G0", "G1", "G2", "G3"})
 _FEED_MODES: Mapping[str, FeedMode] = {"G93": "inverse-time", "G94": "per-minute", "G95": "per-revolution"}
 _SPINDLE: Mapping[str, Literal[-1, 0, 1]] = {"M3": 1, "M4": -1, "M5": 0, "M19": 0}
+#: Range of each word of M19: an angle, a sense, and a time.
+_ORIENTATION: Mapping[str, tuple[float, float]] = {"R": (0.0, 360.0), "P": (0.0, 2.0), "Q": (1e-9, 1e9)}
 _ENDS = frozenset({"M2", "M30"})
 
 
@@ -59,7 +61,8 @@ def not_negative(block: ParsedBlock, word: Word) -> float:
 
 def set_modes(state: State, command: Command) -> Result:
     """Codes whose whole effect is one modal value."""
-    for rule, word in command.of_phase("modes"):
+    uses = command.of_phase("modes")
+    for rule, word in sorted(uses, key=lambda use: use.rule.code != "G80"):
         code = rule.code
         if code in _PLANE_OF_CODE:
             state = _with_plane(state, command, word, _PLANE_OF_CODE[code])
@@ -139,6 +142,10 @@ def set_spindle_on(state: State, command: Command) -> Result:
 
 def set_spindle_off(state: State, command: Command) -> Result:
     """M5, and M19 which stops the spindle too."""
+    for letter, (least, most) in _ORIENTATION.items():
+        word = command.words.get(letter)
+        if command.code("M19") and word is not None and not least <= word.value <= most:
+            raise command.block.error(word, "bad-value", f"{word.text} beside M19", f"{letter}{least:g} to {most:g}")
     return _set_spindle(state, command, "spindle_off")
 
 
@@ -159,7 +166,20 @@ def spindle_event(state: State, command: Command) -> SpindleChange:
 
 def select_tool(state: State, command: Command) -> Result:
     """T: the tool that the next M6 puts in."""
-    return state.with_modes(next_tool=whole_number(command.block, command.words["T"])), ()
+    word = command.words["T"]
+    number = whole_number(command.block, word)
+    _check_tool(state, command, word, number)
+    return state.with_modes(next_tool=number), ()
+
+
+def _check_tool(state: State, command: Command, word: Word, number: int) -> None:
+    """Refuses a tool that a control with a tool table does not know."""
+    tools = state.setup.tools
+    if number == 0 or number in tools or state.control.settings.tools is None:
+        return
+    if state.control.dialect.tools_must_be_known:
+        known = ", ".join(f"T{n}" for n in sorted(tools)) or "none is given"
+        raise command.block.error(word, "unknown-tool", f"{word.text} is not in the tool table", f"one of it: {known}")
 
 
 def change_tool(state: State, command: Command) -> Result:
@@ -184,6 +204,7 @@ def _name_tool(state: State, command: Command, word: Word) -> Result:
     if "Q" not in command.words:
         raise command.block.error(word, "missing-tool", f"{word.text} without Q", "Q and the number of the tool")
     tool = whole_number(command.block, command.words["Q"])
+    _check_tool(state, command, command.words["Q"], tool)
     return state.with_machine(tool=tool), (ToolChange(place=command.block.place, tool=tool),)
 
 

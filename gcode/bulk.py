@@ -22,7 +22,7 @@ _T = TypeVar("_T", bound=np.generic)
 #: Most lines of one run: enough that what a run costs besides its lines is nothing.
 MAX_LINES = 16_384
 #: Fewer lines are run faster one by one.
-LEAST_LINES = 8
+LEAST_LINES = 5
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,6 +31,7 @@ class CodeRule:
         status: what becomes of it.
         phase: step in the order of execution of a block (`Dialect.order`); empty where nothing is to be done.
         letters: letters of the words that it takes; ``*`` for every letter that nothing else takes.
+        needs: letters of the words that must stand beside it.
         takes_axes: True where its axis words are its own, so that the block has no motion besides.
         meaning: what it is, in words, for messages and reference tables.
     """
@@ -42,6 +43,7 @@ class CodeRule:
     letters: str
     takes_axes: bool
     meaning: str
+    needs: str = ""
 
 
 Table: TypeAlias = Mapping[str, CodeRule]
@@ -55,6 +57,7 @@ def rules(
     phase: str = "",
     letters: str = "",
     takes_axes: bool = False,
+    needs: str = "",
 ) -> dict[str, CodeRule]:
     """Rows of a table that share everything but code and meaning; `groups` are names with blanks between."""
     return {
@@ -66,6 +69,7 @@ def rules(
             letters=letters,
             takes_axes=takes_axes,
             meaning=meaning,
+            needs=needs,
         )
         for code, meaning in meanings.items()
     }
@@ -86,9 +90,9 @@ def neutral(groups: str, meanings: Mapping[str, str], letters: str = "") -> dict
     return rules(groups, Status.NEUTRAL, meanings, letters=letters)
 
 
-def noticed(groups: str, meanings: Mapping[str, str], letters: str = "") -> dict[str, CodeRule]:
+def noticed(groups: str, meanings: Mapping[str, str], letters: str = "", needs: str = "") -> dict[str, CodeRule]:
     """Rows of codes that have no motion."""
-    return rules(groups, Status.NOTICE, meanings, phase="notice", letters=letters)
+    return rules(groups, Status.NOTICE, meanings, phase="notice", letters=letters, needs=needs)
 
 
 def refused(groups: str, meanings: Mapping[str, str]) -> dict[str, CodeRule]:

@@ -49,7 +49,7 @@ def _write_offset(state: State, command: Command, *, from_position: bool, additi
         base = state.setup.external_mm if state.modes.absolute else ORIGIN
         return state.with_setup(external_mm=_moved(state, command, state.setup.external_mm, base)), ()
     old = state.setup.offsets.get(name, WorkOffset())
-    turned = _turned(state, command, old)
+    turned = _turned(state, command, old, from_position=from_position)
     if from_position:
         new = _offset_from_position(state, command, replace(old, rotation_deg=turned))
     else:
@@ -66,11 +66,11 @@ def _moved(state: State, command: Command, old: Point, otherwise: Point) -> Poin
     return plus(old, axis_words(state, command, ORIGIN))
 
 
-def _turned(state: State, command: Command, old: WorkOffset) -> float:
+def _turned(state: State, command: Command, old: WorkOffset, *, from_position: bool) -> float:
     word = command.words.get("R")
     if word is None:
         return old.rotation_deg
-    if not state.control.dialect.shift_is_rotated:
+    if not state.control.dialect.shift_is_rotated or from_position:
         raise command.block.error(word, "unused-word", f"{word.text}: no work offset of this control is turned")
     return word.value
 

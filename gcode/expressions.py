@@ -300,7 +300,7 @@ def _existence(source: Source, bracket: int) -> tuple[Function, int]:
     _closing(source, bracket, end)
     name = variable.name
     if name is None:
-        raise source.error(bracket, "bad-expression", "EXISTS of a number", "EXISTS[#<name>]")
+        return (lambda scope: 1.0), end + 1
     return (lambda scope: float(scope.exists(name))), end + 1
 
 

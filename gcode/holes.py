@@ -38,6 +38,12 @@ def drill(state: State, command: Command) -> Result:
     rules = state.control.dialect.cycles
     if rules is None:
         raise command.block.error(None, "unsupported-code", f"{state.modes.motion} is not supported")
+    if state.machine.feed_mode == "inverse-time":
+        problem = f"{state.modes.motion} with inverse time feed"
+        raise command.block.error(None, "cycle-feed", problem, "G94 or G95")
+    if state.path is not None and state.path.compensates:
+        problem = f"{state.modes.motion} while cutter compensation is on"
+        raise command.block.error(None, "compensation-cycle", problem, "G40 before it")
     i, j, k = PLANE_AXES[state.machine.plane]
     here = state.program_mm
     if not state.modes.in_cycle:
@@ -50,7 +56,7 @@ def drill(state: State, command: Command) -> Result:
     state = state.with_modes(in_cycle=True, cycle_words=MappingProxyType(dict(output.sticky)))
     events: list[Event] = []
     for step in output.steps:
-        state, more = _execute(state, command, step)
+        state, more = _execute(state, command, rules, step)
         events.extend(more)
     end = state.frame.to_machine(_point(state, output.position))
     if not same_place(end, state.position_mm):
@@ -100,12 +106,13 @@ def _without_polar(
     return position, {**words, AXES[i]: end[i] - shift[0], AXES[j]: end[j] - shift[1]}
 
 
-def _execute(state: State, command: Command, step: Step) -> Result:
+def _execute(state: State, command: Command, rules: CycleRules, step: Step) -> Result:
     place = command.block.place
     match step:
         case Move():
             end = state.frame.to_machine(_point(state, step.end))
-            return straight(state, command, end, rapid=step.rapid, tapping=step.tapping)
+            tapping = step.tapping and rules.tap_follows_spindle
+            return straight(state, command, end, rapid=step.rapid, tapping=tapping)
         case Pause():
             return state, (Dwell(place=place, state=state.machine, seconds=step.seconds),)
         case Spindle():

@@ -17,7 +17,7 @@ _PHASE_OF_LETTER: Mapping[str, str] = {"F": "feed", "S": "speed", "T": "tool"}
 #: Phases that a word asks for only where it is free to stand in any block.
 _PHASE_OF_FREE_LETTER: Mapping[str, str] = {"H": "length", "D": "radius"}
 #: Groups whose codes take the axis words of the blocks that follow.
-_MOTION_GROUPS = frozenset({"motion", "cycle"})
+_MOTION_GROUPS = frozenset({"motion", "motion-cancel", "cycle"})
 #: Codes after whose motions a corner may be cut or rounded.
 _CORNERED = frozenset({"G1", "G2", "G3"})
 
@@ -85,6 +85,7 @@ def resolve(state: State, block: ParsedBlock) -> Command:
         problem = f"{second.letter} is given twice: {first.text} and {second.text}"
         raise block.error(second, "repeated-word", problem, f"one {second.letter} in a block")
     moves = _claim_words(state, block, uses, words)
+    _check_needs(block, uses, words)
     return Command(block, tuple(uses), words, _phases(dialect, uses, words, moves))
 
 
@@ -122,7 +123,8 @@ def _claim_words(state: State, block: ParsedBlock, uses: list[Use], words: Mappi
     explicit: Use | None = None
     for use in uses:
         if not _MOTION_GROUPS.isdisjoint(use.rule.groups):
-            motion, explicit = use.rule, use
+            if explicit is None or use.rule.code != "G80":
+                motion, explicit = use.rule, use
             continue
         if use.rule.letters == "*":
             return False
@@ -136,9 +138,17 @@ def _claim_words(state: State, block: ParsedBlock, uses: list[Use], words: Mappi
         corners = dialect.corner_letters if motion.code in _CORNERED else ()
         left, rest = rest, [w for w in rest if w.letter not in motion.letters and w.letter not in corners]
         _check_rest(state, block, uses, rest)
-        return len(left) > len(rest)
+        return len(left) > len(rest) or (explicit is not None and dialect.explicit_code_moves)
     _check_rest(state, block, uses, rest)
     return False
+
+
+def _check_needs(block: ParsedBlock, uses: list[Use], words: Mapping[str, Word]) -> None:
+    for rule, word in uses:
+        for letter in rule.needs:
+            if letter not in words:
+                problem = f"{word.text} without {letter}"
+                raise block.error(word, "missing-word", problem, f"{' and '.join(rule.needs)} beside it")
 
 
 def _check_rest(state: State, block: ParsedBlock, uses: list[Use], rest: list[Word]) -> None:

@@ -14,7 +14,7 @@ from gcode.reference import return_to_reference
 from gcode.splines import cubic_spline, quadratic_spline
 from gcode.state import AXES, State
 from gcode.straight import straight
-from gcode.targets import extra_end, moved_to, programmed_end, settled
+from gcode.targets import extra_end, moved_to, programmed_end, require_axes, settled
 
 
 def move(state: State, command: Command) -> Result:
@@ -70,6 +70,7 @@ def _replaced(point: Point, command: Command, unit_mm: float) -> Point:
 
 def _synchronised(state: State, command: Command) -> Result:
     """G33: K of path to a turn of the spindle."""
+    require_axes(state, command)
     end, feed = programmed_end(state, command), _pitch_feed(state, command)
     event = LinearMotion(
         place=command.block.place,
@@ -84,6 +85,7 @@ def _synchronised(state: State, command: Command) -> Result:
 
 def _rigid_tap(state: State, command: Command) -> Result:
     """G33.1: into the hole at K a turn, and back out to the start with the spindle reversed."""
+    require_axes(state, command)
     start, end = state.position_mm, programmed_end(state, command)
     feed = _pitch_feed(state, command)
     place, there = command.block.place, state.machine

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from gcode.actions import Action, Result, not_negative, whole_number
 from gcode.blocks import Word
-from gcode.events import Extra, Point
+from gcode.events import Event, Extra, Notice, Point
 from gcode.frame import ORIGIN, difference, plus
 from gcode.modal import Command
 from gcode.settings import ADDITIONAL_OFFSETS, ToolOffset
@@ -55,31 +55,39 @@ def set_length(state: State, command: Command) -> Result:
     word = command.words.get("H")
     number = whole_number(command.block, word) if word else state.modes.length_number
     offset = ORIGIN
+    notices: tuple[Event, ...] = ()
     if code == "G43.2":
         offset = _added_length(state, command)
     elif _LENGTH_SIGN[code]:
         if word is None and not state.control.dialect.length_word_is_modal:
             number = None
         row = _length_row(state, command, number)
+        notices = _unknown_table(state, command, number)
         both = state.control.dialect.length_moves_all_axes
         sign = _LENGTH_SIGN[code]
         offset = (row.x_mm if both else 0.0, row.y_mm if both else 0.0, sign * row.whole_length_mm)
-    return _with_length(state, code, number, offset), ()
+    return _with_length(state, code, number, offset), notices
+
+
+def _unknown_table(state: State, command: Command, number: int | None) -> tuple[Event, ...]:
+    """A notice that the length of a tool is not known and counts as 0."""
+    if state.control.settings.tools is not None or not number or number in state.setup.tools:
+        return ()
+    word = command.words.get("H") or command.of_phase("length")[0].word
+    text = f"{word.text}: no tool table is given, so the length of offset {number} counts as 0"
+    return (Notice(place=command.block.place_of(word), code="no-tool-table", text=text),)
 
 
 def _added_length(state: State, command: Command) -> Point:
-    """G43.2: a further row of the table, or axis words, on top of what holds."""
+    """G43.2: a further row of the table on top of what holds."""
     x, y, z = state.tool_offset_mm
     word = command.words.get("H")
-    if word is not None:
-        row = _length_row(state, command, whole_number(command.block, word))
-        return (x + row.x_mm, y + row.y_mm, z + row.whole_length_mm)
-    if not any(axis in command.words for axis in AXES + EXTRA_AXES):
+    if word is None:
         use = command.of_phase("length")[0].word
-        problem = f"{use.text} without an H word or axis words"
-        raise command.block.error(use, "missing-length-offset", problem, "H and a number, or axis words")
-    a, b, c = axis_words(state, command, ORIGIN)
-    return (x + a, y + b, z + c)
+        problem = f"{use.text} without an H word"
+        raise command.block.error(use, "missing-length-offset", problem, "H and the number of a tool length offset")
+    row = _length_row(state, command, whole_number(command.block, word))
+    return (x + row.x_mm, y + row.y_mm, z + row.whole_length_mm)
 
 
 def axis_words(state: State, command: Command, otherwise: Point) -> Point:
@@ -116,6 +124,8 @@ def _length_row(state: State, command: Command, number: int | None) -> ToolOffse
         raise command.block.error(word, "missing-length-offset", problem, "H and the number of a tool length offset")
     if number == 0:
         return ToolOffset()
+    if number not in table and state.control.settings.tools is None:
+        return ToolOffset()
     if number not in table:
         known = ", ".join(f"H{n}" for n in sorted(table)) or "none is given"
         problem = f"tool length offset {number} is not in the table"
@@ -131,6 +141,8 @@ def set_shift(state: State, command: Command) -> Result:
 
 def _local(state: State, command: Command) -> Result:
     """G52: the zero lies at the given place of the work offset; axes without a word keep theirs."""
+    if not any(axis in command.words for axis in AXES + EXTRA_AXES):
+        return _without_axes(state, command)
     if state.control.dialect.shift_is_rotated:
         shift = WorkOffset(
             zero_mm=axis_words(state, command, state.setup.shift.zero_mm),

@@ -19,7 +19,7 @@ from gcode.statements import OKeyword, OWord
 if TYPE_CHECKING:
     from gcode.runner import Runner
 
-_LOOP_ENDS = ("endwhile", "endrepeat", "while")
+_LOOP_ENDS = ("endwhile", "while")
 #: Fields of the modal state that M70 saves.
 _SAVED_MODES = ("absolute", "unit_mm", "absolute_centres", "feed", "return_to_r", "diameter", "motion", "base_motion")
 _SAVED_MACHINE = ("plane", "feed_mode", "spindle_rpm")
@@ -64,7 +64,7 @@ def _next(runner: Runner, block: ParsedBlock, word: OWord, label: str, keywords:
     for line in runner.level.program.o_lines_after(runner.line_offset):
         if line.label == label and line.keyword in keywords:
             return line
-        if line.keyword in ("sub", "endsub") and line.label != label and "endsub" not in keywords:
+        if line.keyword in ("sub", "endsub"):
             break
     raise _error(block, word, label, " or ".join(keywords))
 
@@ -81,7 +81,14 @@ def _sub(runner: Runner, block: ParsedBlock, word: OWord) -> None:
     level = runner.level
     if level.kind == "routine" and level.start.offset == runner.line_offset:
         return
+    if level.program.subroutines.get(label, runner_spot(runner)).offset != runner.line_offset:
+        raise block.error_at(word.column, "o-word", f"o<{label}> sub is defined twice", "one definition of a label")
     level.jump(_behind(runner, _next(runner, block, word, label, ("endsub",)).spot))
+
+
+def runner_spot(runner: Runner) -> Spot:
+    """The line that is being run."""
+    return Spot(runner.line_offset, runner.level.spot.line - 1)
 
 
 def _end_sub(runner: Runner, block: ParsedBlock, word: OWord) -> None:
@@ -146,7 +153,7 @@ def _past_if(runner: Runner, block: ParsedBlock, word: OWord) -> None:
 
 
 def _end_if(runner: Runner, block: ParsedBlock, word: OWord) -> None:
-    return
+    _opener(runner, block, word, _label(runner, block, word), ("if",))
 
 
 def _opener(runner: Runner, block: ParsedBlock, word: OWord, label: str, keywords: tuple[str, ...]) -> OLine:

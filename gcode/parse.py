@@ -20,7 +20,7 @@ MAX_VALUE = 1e9
 _PLAIN = re.compile(r"(?:[ \t]*[A-Za-z][ \t]*[+-]?(?:\d+\.?\d*|\.\d+))*[ \t]*", re.ASCII)
 _PLAIN_WORD = re.compile(r"[ \t]*(([A-Za-z])[ \t]*([+-]?(?:\d+\.?\d*|\.\d+)))", re.ASCII)
 _CONTROL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f]")
-_NUMBER = re.compile(r"[+-]?[0-9.]*")
+_NUMBER = re.compile(r"[+-]*[0-9.]*")
 _GOOD_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)", re.ASCII)
 _KEYWORD = re.compile(r"IF|THEN|ELSE|WHILE|DO|END|GOTO|SUB|CALL|REPEAT|RETURN|BREAK|CONTINUE|POPEN|PCLOS|DPRNT|SETVN")
 _CONTROL_NAMES = {"\x00": "NUL", "\r": "carriage return", "\x1a": "substitute (Ctrl-Z)"}
@@ -49,7 +49,7 @@ def parse_blocks(place: Place, dialect: Dialect = FANUC, *, block_delete: bool =
             a number out of range, a broken expression or statement, and lines over `MAX_LINE` characters.
     """
     text = place.text
-    if len(text) <= MAX_LINE and _PLAIN.fullmatch(text):
+    if len(text) <= MAX_LINE and _PLAIN.fullmatch(text) and not (dialect.macro.named and "O" in text.upper()):
         return (ParsedBlock(place=place, words=_plain_words(place)),)
     _check_characters(place)
     if text.lstrip().startswith("%"):
@@ -93,6 +93,9 @@ def _segments(place: Place, dialect: Dialect) -> list[_Segment]:
         character, current = text[position], segments[-1]
         if character == "(":
             end = text.find(")", position)
+            inner = text.find("(", position + 1)
+            if dialect.macro.named and 0 <= inner < end:
+                raise GcodeError(_at(place, inner + 1), "nested-comment", "( inside a comment", "one comment at a time")
             if end < 0:
                 raise GcodeError(_at(place, position + 1), "unclosed-comment", "a comment without its end", ")")
             current.comments.append(text[position + 1 : end])
@@ -160,6 +163,8 @@ def _head(place: Place, source: Source, words: list[Word], *, block_delete: bool
     """A slash and a block number, in either order; whether the block is deleted."""
     position = 0
     while position < len(source.text):
+        if source.at(position, "//"):
+            break
         if source.at(position, "/"):
             position += 2 if source.text[position + 1 : position + 2].isdigit() else 1
             if block_delete:
@@ -184,7 +189,7 @@ def _words(
         elif source.at(position, "/"):
             problem = "block delete / inside a block"
             raise GcodeError(_at(place, source.column(position)), "block-delete-place", problem, "/ at its start")
-        elif source.at(position, "<") or (source.at(position, "O<") and not source.language.named):
+        elif source.at(position, "<") or source.at(position, "O<"):
             start = position + source.text[position].count("O")
             end = source.text.find(">", start)
             if end < 0:
@@ -217,6 +222,8 @@ def _word(place: Place, source: Source, position: int) -> tuple[Word, int]:
     position += 1
     number = _NUMBER.match(source.text, position)
     digits = number[0] if number else ""
+    if source.language.named:
+        digits, position = _one_sign(digits), position + max(len(digits) - len(_one_sign(digits)), 0)
     end = position + len(digits)
     if _GOOD_NUMBER.fullmatch(digits):
         value = float(digits)
@@ -224,6 +231,15 @@ def _word(place: Place, source: Source, position: int) -> tuple[Word, int]:
             raise _too_large(place, source.column(start) - 1, letter + digits)
         return Word(letter, value, letter + digits, source.column(start)), end
     return _worked_out(place, source, start, letter, position, digits)
+
+
+def _one_sign(digits: str) -> str:
+    """Signs in a row as one."""
+    bare = digits.lstrip("+-")
+    signs = digits[: len(digits) - len(bare)]
+    if len(signs) < 2 or not bare:
+        return digits
+    return ("-" if signs.count("-") % 2 else "") + bare
 
 
 def _worked_out(
@@ -249,7 +265,7 @@ def _worked_out(
 
 
 def _function_follows(source: Source, position: int) -> bool:
-    return bool(re.match(r"[+-]?[A-Z]{2,5}\[", source.text[position : position + 8]))
+    return bool(re.match(r"[+-]?[A-Z]{2,6}\[", source.text[position : position + 8]))
 
 
 def _too_large(place: Place, index: int, shown: str) -> GcodeError:

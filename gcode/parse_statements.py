@@ -121,7 +121,7 @@ def _o_word(source: Source, position: int) -> tuple[Statement, int] | None:
         raise source.error(position, "o-word", "O without a label", "O and a number or <name>")
     keyword = _O_KEYWORD.match(source.text, end)
     if not keyword:
-        if number and end == len(source.text):
+        if end == len(source.text) and value is None:
             return None
         shown = source.text[end : end + 12] or "the end of the block"
         raise source.error(position, "o-word", f"{shown} behind O<{label}>", "sub, call, if, while, do, repeat...")

@@ -18,7 +18,11 @@ from gcode.targets import extra_end, programmed_end, settled
 
 def return_to_reference(state: State, command: Command) -> Result:
     """The one of this family that the block holds."""
-    return _ACTIONS[command.of_phase("reference")[0].rule.code](state, command)
+    use = command.of_phase("reference")[0]
+    if state.path is not None and state.path.compensates:
+        problem = f"{use.word.text} while cutter compensation is on"
+        raise command.block.error(use.word, "compensation-reference", problem, "G40 before it")
+    return _ACTIONS[use.rule.code](state, command)
 
 
 def _named(state: State, command: Command) -> frozenset[str]:

@@ -22,7 +22,7 @@ from gcode.parse import parse_blocks
 from gcode.program import Program, Spot
 from gcode.recover import recovered
 from gcode.settings import MachineSettings
-from gcode.state import State, initial_state
+from gcode.state import Setup, State, initial_state
 from gcode.step import step
 from gcode.system_variables import SystemVariables
 from gcode.variables import Variables
@@ -66,7 +66,7 @@ class Runner:
             system_name=self.system.named,
             initial=settings.variables,
         )
-        self.spare: dict[int, float] = {}
+        self.spare: dict[int, tuple[float, Setup]] = {}
         self.pending: list[Event] = []
         self.last_label = 0
         self.modal_macro: flow.ModalMacro | None = None
@@ -199,6 +199,7 @@ class Runner:
         if self.pending:
             yield from self.pending
             self.pending.clear()
+        self._note(words)
         call = flow.macro_call(words)
         if call is not None:
             words, macro = call
@@ -211,6 +212,15 @@ class Runner:
             flow.call_macro(self, block, macro)
         elif moved and self.modal_macro is not None and not level.modal and level is self.level:
             flow.call_modal(self, block)
+
+    def _note(self, block: ParsedBlock) -> None:
+        """Keeps the number of the block, and obeys a comment that ends the program."""
+        if block.words and block.words[0].letter == "N":
+            self.last_label = int(block.words[0].value)
+        for comment in block.comments:
+            if self.dialect.macro.named and comment.strip().lower().startswith("abort,"):
+                self.state = replace(self.state, ended=True)
+                raise block.error(None, "abort", f"the program aborts: {comment.strip()[6:]}")
 
     def _step(self, block: ParsedBlock, *, first_of_program: bool) -> Generator[Event, None, bool]:
         """Runs a block of words; True where it moved."""
@@ -252,8 +262,15 @@ class Runner:
         self.state = replace(state, position_mm=run.position_mm, started=True)
         if motion != state.modes.motion or run.feed_after != feed:
             self.state = self.state.with_modes(motion=motion, base_motion=motion, feed=run.feed_after)
+        self.last_label = self.last_label if run.label_after is None else run.label_after
         return PlainBatch(
-            start=start, run=run, state=state.machine, file=level.program.file, program=level.program, calls=level.calls
+            start=start,
+            run=run,
+            state=state.machine,
+            file=level.program.file,
+            program=level.program,
+            calls=level.calls,
+            extra=state.extra,
         )
 
 

@@ -100,6 +100,7 @@ class MachineSettings:
         block_delete: True where the block delete switch is on.
         optional_stop: True where the optional stop switch is on; it is only told in the `ProgramStop` event.
         units: what lengths and feeds mean until the program says G20 or G21.
+        machine_units: unit in which the machine's own offset variables count, where a program reads or sets them.
         decimal_point: ``calculator``: X100 is 100 mm; ``increment``: a number without a point counts the least input
             increment (0.001 mm or 0.0001 inch), as FANUC's parameter 3401 bit 0 decides.
         compensation_startup: type of start-up and cancel of FANUC's cutter compensation (parameter 5003 bits 0, 1).
@@ -124,6 +125,7 @@ class MachineSettings:
     block_delete: bool = False
     optional_stop: bool = False
     units: Literal["mm", "inch"] = "mm"
+    machine_units: Literal["mm", "inch"] = "mm"
     decimal_point: Literal["calculator", "increment"] = "calculator"
     compensation_startup: Literal["A", "B"] = "A"
     limits: Limits = Limits()
@@ -145,6 +147,7 @@ class MachineSettings:
             raise ValueError(f"arc_tolerance_mm must be 0 or more, got {self.arc_tolerance_mm}")
         _choice("arc_centres", self.arc_centres, ("incremental", "absolute"))
         _choice("units", self.units, ("mm", "inch"))
+        _choice("machine_units", self.machine_units, ("mm", "inch"))
         _choice("decimal_point", self.decimal_point, ("calculator", "increment"))
         _choice("compensation_startup", self.compensation_startup, ("A", "B"))
 

@@ -10,7 +10,7 @@ from gcode.events import Event, Point
 from gcode.modal import Command
 from gcode.state import State
 from gcode.straight import straight
-from gcode.targets import program_end
+from gcode.targets import program_end, require_axes
 
 #: A control runs a curve as short straight motions; as many as LinuxCNC takes.
 CURVE_PIECES = 100
@@ -23,6 +23,7 @@ def cubic_spline(state: State, command: Command) -> Result:
         GcodeError: outside of G17, without P or Q, with one of I and J, and without both right after another motion.
     """
     _plane(state, command)
+    require_axes(state, command)
     start, end = state.program_mm, program_end(state, command)
     p, q = (_needed(state, command, letter) for letter in "PQ")
     if ("I" in command.words) != ("J" in command.words):
@@ -48,13 +49,12 @@ def quadratic_spline(state: State, command: Command) -> Result:
     """G5.1: I, J from the start is the control point.
 
     Raises:
-        GcodeError: outside of G17, and where neither I nor J is given.
+        GcodeError: outside of G17, and where I or J is missing.
     """
     _plane(state, command)
-    if "I" not in command.words and "J" not in command.words:
-        raise _missing(command, None, "I or J")
-    start, end, unit = state.program_mm, program_end(state, command), state.modes.unit_mm
-    i, j = (command.words[letter].value * unit if letter in command.words else 0.0 for letter in "IJ")
+    require_axes(state, command)
+    start, end = state.program_mm, program_end(state, command)
+    i, j = (_needed(state, command, letter) for letter in "IJ")
     middle = (start[0] + i, start[1] + j)
     controls = [
         start[:2],

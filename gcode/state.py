@@ -31,7 +31,7 @@ class Control:
     @property
     def machine_unit_mm(self) -> float:
         """Length of the machine's own unit, in which offset variables count."""
-        return MM_PER_INCH if self.settings.units == "inch" else 1.0
+        return MM_PER_INCH if self.settings.machine_units == "inch" else 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -231,6 +231,7 @@ def initial_state(dialect: Dialect, settings: MachineSettings) -> State:
     unit = MM_PER_INCH if settings.units == "inch" else 1.0
     modes = Modes(
         motion=dialect.power_on_motion,
+        return_to_r=dialect.power_on_return_to_r,
         unit_mm=unit,
         absolute_centres=settings.arc_centres == "absolute",
         turnings=MappingProxyType({}),

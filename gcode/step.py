@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from gcode.actions import ACTIONS, Action, whole_number
+from gcode.actions import ACTIONS, Action, not_negative, whole_number
 from gcode.blocks import ParsedBlock
 from gcode.calls import CALL_ACTIONS
 from gcode.compensated import RADIUS_ACTIONS, through
@@ -69,6 +69,8 @@ def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...
     else:
         state, ready = through(state, None, (first,))
         events.extend(ready)
+    if state.path is not None and state.path.compensates:
+        _check_under_compensation(state, command)
     for phase in command.phases:
         state, more = PHASES[phase](state, command)
         if phase == "radius":
@@ -79,6 +81,15 @@ def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...
             state, ready = through(state, command if phase == "motion" else None, more)
             events.extend(ready)
     return state, tuple(events)
+
+
+def _check_under_compensation(state: State, command: Command) -> None:
+    """Refuses what a control does not do while cutter compensation is on."""
+    off = command.code("G40") is not None
+    for use in command.uses:
+        if use.rule.phase in state.control.dialect.not_compensated and not off:
+            problem = f"{use.word.text} while cutter compensation is on"
+            raise command.block.error(use.word, "compensation-on", problem, "G40 before it")
 
 
 def _asks_corner(command: Command) -> bool:
@@ -97,6 +108,11 @@ def _numbers(state: State, block: ParsedBlock, *, first_of_program: bool) -> Sta
     """Checks N and O; a second O is another program, which this one does not run into."""
     for word in block.words:
         if word.letter in "NO":
+            if word.letter == "N" and not state.control.dialect.whole_block_numbers:
+                if word is not block.words[0]:
+                    raise block.error(word, "block-number-place", f"{word.text} inside a block", "N at its start")
+                not_negative(block, word)
+                continue
             number = whole_number(block, word)
             if word.letter == "O":
                 if state.modes.program is not None and not first_of_program:

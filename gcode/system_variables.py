@@ -77,6 +77,9 @@ _FANUC_OFFSETS: tuple[tuple[int, int, Callable[[int], str]], ...] = (
     (7001, 48, lambda n: f"G54.1 P{n + 1}"),
     (14001, 300, lambda n: f"G54.1 P{n + 1}"),
 )
+#: LinuxCNC's parameters are #1 to this less 1; one of them, 1 at the start, turns its debug messages on.
+_PARAMETERS, _DEBUG_OUTPUT = 5602, 5599
+_OFFSET_PARAMETERS = range(5161, 5391)
 _UNKNOWN_CLOCKS = {3001: "a clock", 3002: "a clock", 3011: "the date", 3012: "the time"}
 _IGNORED = {3003: "single-block control", 3004: "feed control", 3005: "settings", 3007: "mirror image status"}
 
@@ -192,6 +195,9 @@ class SystemVariables:
     def _read_linuxcnc(self, index: int) -> float | None:
         state = self._state
         machine = state.control.machine_unit_mm
+        stored = self._runner.spare.get(index)
+        if stored is not None and (stored[1] is state.setup or index not in _OFFSET_PARAMETERS):
+            return stored[0]
         if 5161 <= index <= 5169 or 5181 <= index <= 5189:
             point, extra = state.setup.references.get(1 if index < 5180 else 2, (ORIGIN, NO_EXTRA))
             return _nine(point, extra, machine)[index % 10 - 1 if index < 5180 else index - 5181]
@@ -209,8 +215,8 @@ class SystemVariables:
             return _nine(state.tool_offset_mm, NO_EXTRA, machine)[index - 5401]
         if 5420 <= index <= 5428:
             return self._position()[index - 5420]
-        if 0 < index <= 5602 or 5061 <= index <= 5070:
-            return self._runner.spare.get(index, 0.0)
+        if 0 < index < _PARAMETERS:
+            return 1.0 if index == _DEBUG_OUTPUT else 0.0
         raise _unknown(index, "no parameter of this control")
 
     def _position(self) -> tuple[float, ...]:
@@ -226,23 +232,10 @@ class SystemVariables:
         return _nine(offset.zero_mm, offset.extra, machine)[axis] if axis < 9 else 0.0
 
     def _write_linuxcnc(self, index: int, value: float | None) -> None:
-        number = value or 0.0
-        state = self._state
-        machine = state.control.machine_unit_mm
-        if 5221 <= index <= 5390:
-            which, axis = divmod(index - 5221, 20)
-            if axis < 3:
-                self._runner.state = _with_zero(state, NUMBERED_OFFSETS[which], axis, number * machine)
-            elif axis == 9:
-                self._runner.state = _with_rotation(state, NUMBERED_OFFSETS[which], number)
-            return
-        if 5161 <= index <= 5163 or 5181 <= index <= 5183:
-            which, axis = (1, index - 5161) if index < 5180 else (2, index - 5181)
-            self._runner.state = _with_reference(state, which, axis, number * machine)
-            return
-        if not 0 < index <= 5602 or index in range(5400, 5430):
+        """Stores a parameter. LinuxCNC reads offsets from them only when it starts, so nothing is moved by it."""
+        if not 0 < index < _PARAMETERS or index in range(5400, 5430):
             raise EvaluationError("read-only-variable", f"#{index} cannot be set", "a parameter that can be written")
-        self._runner.spare[index] = number
+        self._runner.spare[index] = (value or 0.0, self._state.setup)
 
     def named(self, name: str) -> float | None:
         """Value of one of the control's named parameters, None where there is none of that name."""
@@ -307,17 +300,6 @@ def _with_zero(state: State, name: str, axis: int, value_mm: float) -> State:
     return state.with_setup(offsets=MappingProxyType({**state.setup.offsets, name: new}))
 
 
-def _with_rotation(state: State, name: str, angle_deg: float) -> State:
-    new = replace(state.setup.offsets.get(name, WorkOffset()), rotation_deg=angle_deg)
-    return state.with_setup(offsets=MappingProxyType({**state.setup.offsets, name: new}))
-
-
-def _with_reference(state: State, number: int, axis: int, value_mm: float) -> State:
-    point, extra = state.setup.references.get(number, (ORIGIN, NO_EXTRA))
-    references = MappingProxyType({**state.setup.references, number: (_changed(point, axis, value_mm), extra)})
-    return state.with_setup(references=references)
-
-
 _LINUXCNC_TOOL: Mapping[int, Callable[[State], float]] = {
     5399: lambda s: 0.0,
     5400: lambda s: float(s.machine.tool),
@@ -360,8 +342,8 @@ _NAMED: Mapping[str, Callable[[State], Any]] = {
     "_rpm": lambda s: s.machine.spindle_rpm,
     "_current_tool": lambda s: s.machine.tool,
     "_current_pocket": lambda s: s.setup.tools.get(s.machine.tool, ToolOffset()).pocket or 0,
-    "_selected_tool": lambda s: -1 if s.modes.next_tool is None else s.modes.next_tool,
-    "_selected_pocket": lambda s: -1 if s.modes.next_tool is None else s.modes.next_tool,
+    "_selected_tool": lambda s: 0 if s.modes.next_tool is None else s.modes.next_tool,
+    "_selected_pocket": lambda s: 0 if s.modes.next_tool is None else s.modes.next_tool,
     "_value": lambda s: 0.0,
     "_value_returned": lambda s: 0.0,
     "_task": lambda s: 0.0,

@@ -111,6 +111,16 @@ def moved_to(state: State, end: Point, extra: Extra | None = None) -> State:
     return replace(state, position_mm=end, extra=state.extra if extra is None else extra)
 
 
+def require_axes(state: State, command: Command) -> None:
+    """Refuses a motion that names no axis.
+
+    Raises:
+        GcodeError: where the block has no axis word.
+    """
+    if command.words.keys().isdisjoint(AXES):
+        raise command.block.error(None, "missing-axis", f"{state.modes.motion} names no axis", "at least one axis word")
+
+
 def feed_mm_min(state: State, command: Command, length_mm: float) -> float:
     """Speed of a feed motion of this length along its path, mm/min.
 

@@ -11,6 +11,8 @@ from gcode.statements import Variable
 _COMMON = (range(100, 200), range(500, 1000))
 #: Variables of LinuxCNC that are the user's.
 _GLOBALS = range(31, 5001)
+#: Names of the control's that calls set.
+_SETTABLE = frozenset({"_value", "_value_returned"})
 #: Names of variables that a program may have.
 _MOST_NAMES = 10_000
 
@@ -116,6 +118,8 @@ class Variables:
     def set_named(self, name: str, value: float) -> None:
         """Sets #<name>; one with a leading underscore holds in all levels."""
         table = self._table(name)
+        if self._system_name(name) is not None and name not in _SETTABLE:
+            raise EvaluationError("read-only-variable", f"#<{name}> is the control's", "a name of the program's own")
         if len(table) >= _MOST_NAMES and name not in table:
             raise EvaluationError("too-many-variables", f"#<{name}> is one too many", f"at most {_MOST_NAMES} names")
         table[name] = value

@@ -127,6 +127,7 @@ class CycleRules:
         shift_direction: direction of the shift by Q along the plane's first and second axis.
         always_rigid: tapping is rigid without a word that says so.
         restart: direction in which a cycle that stopped the spindle starts it again; None for the one before.
+        tap_follows_spindle: the feed of a tap follows the spindle's angle; else it is a plain feed.
         tap_order: by the letter of the plane's normal, which of (first, second, normal) the control puts into each of
             the three in the strokes of a tap; planes that are not named keep the order.
     """
@@ -155,6 +156,7 @@ class CycleRules:
     shift_direction: tuple[float, float] = (1.0, 0.0)
     always_rigid: bool = False
     restart: int | None = None
+    tap_follows_spindle: bool = True
     tap_order: Mapping[str, tuple[int, int, int]] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:

@@ -140,6 +140,7 @@ HAAS_CYCLES = replace(
 #: plane's coordinates into the wrong axes, and so do these: a replay shows what the machine would do.
 LINUXCNC_CYCLES = CycleRules(
     name="LinuxCNC",
+    tap_follows_spindle=False,
     cycles=_table(
         _G73,
         replace(_G74, acts=_LINUXCNC_TAP, inherits="P", repeats=False, spindle=(-1,), unsupported=MappingProxyType({})),

@@ -61,6 +61,7 @@ class Dialect:
         free_letters: letters that may stand in any block.
         refused_letters: letters that are understood and not supported, with what they are.
         extra_axes: letters of further axes whose positions are kept and told.
+        whole_block_numbers: an N word is a whole number.
         corner_letters: letters that cut or round the corner between two feed motions.
         increment_letters: letters whose numbers count least increments where they have no decimal point and the
             machine is set so.
@@ -68,7 +69,9 @@ class Dialect:
         macro: its variables, expressions and jumps.
         cycles: its canned cycles, None for none.
         compensation: how cutter compensation finds the tool's path.
-        compensation_defaults_to_tool: G41/G42 without D take the radius of the tool in the spindle.
+        not_compensated: phases whose codes are refused while cutter compensation is on.
+        not_compensated: frozenset[str]
+    compensation_defaults_to_tool: G41/G42 without D take the radius of the tool in the spindle.
         data_kinds: what G10 writes for each L.
         additional_by_l20: G10 L20 writes additional work offsets; else the offset under which the tool is where the
             words say.
@@ -76,6 +79,9 @@ class Dialect:
         file_end_returns: a subprogram's file that ends without M99 returns; else it is refused.
         subprograms: O words begin programs that M98 calls.
         packed_calls: M98 P31000 calls O1000 three times.
+        explicit_code_moves: a block with a motion code and no axis words is a motion to where the tool is.
+        power_on_return_to_r: G99 holds before the program says otherwise.
+        tools_must_be_known: T names a row of the tool table, where one is given.
         dwell: words of G4.
         length_word_is_modal: an H without G43 changes the active length offset, and G43 without H uses the last one.
         length_defaults_to_tool: G43 without H, or with H0, takes the entry of the tool in the spindle.
@@ -97,12 +103,14 @@ class Dialect:
     free_letters: str
     refused_letters: Mapping[str, str]
     extra_axes: str
+    whole_block_numbers: bool
     corner_letters: tuple[str, ...]
     increment_letters: frozenset[str]
     power_on_motion: str
     macro: MacroLanguage
     cycles: CycleRules | None
     compensation: Literal["linuxcnc", "fanuc"]
+    not_compensated: frozenset[str]
     compensation_defaults_to_tool: bool
     data_kinds: Mapping[int, str]
     additional_by_l20: bool
@@ -110,6 +118,9 @@ class Dialect:
     file_end_returns: bool
     subprograms: bool
     packed_calls: bool
+    explicit_code_moves: bool
+    power_on_return_to_r: bool
+    tools_must_be_known: bool
     dwell: Mapping[str, DwellWord]
     length_word_is_modal: bool
     length_defaults_to_tool: bool

@@ -10,7 +10,7 @@ from gcode.expressions import NO_MACRO
 
 CODES: Table = {
     **{code: rule for code, rule in COMMON.items() if code not in ("G43", "G40", "G90.1")},
-    **executed("motion", "modes", {"G80": "motion cancel"}),
+    **executed("motion-cancel", "modes", {"G80": "motion cancel"}),
     **executed("one-shot", "dwell", {"G4": "dwell"}, "P"),
     **executed("one-shot", "reference", {"G28.1": "store the reference point"}),
     **executed("one-shot", "reference", {"G30.1": "store the second reference point"}),
@@ -32,6 +32,8 @@ GRBL = replace(
     refused_letters={letter: f"{letter} is an axis that GRBL has not" for letter in "ABCUVW"},
     extra_axes="",
     power_on_motion="G0",
+    power_on_return_to_r=False,
+    tools_must_be_known=False,
     macro=NO_MACRO,
     cycles=None,
     data_kinds={2: "zero", 20: "zero-here"},

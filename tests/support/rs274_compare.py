@@ -26,6 +26,7 @@ def settings_of(
     """The machine that ``rs274`` is: at zero, tables in inches, millimetres until a program says otherwise."""
     settings = MachineSettings(
         offsets=dict.fromkeys(SYSTEMS, ORIGIN),
+        machine_units="inch",
         reference_points_mm={2: ORIGIN},
         tools=read_tool_table(table, units="inch") if table else {},
         search_path=(search_path,) if search_path else (),
@@ -128,9 +129,10 @@ def differing(their: Move, our: Move) -> list[str]:
         names += ["abc"] if math.dist(their.abc, our.abc) > 1e-3 else []
     names += ["centre"] if math.dist(their.centre, our.centre) > allowed else []
     names += ["seconds"] if not _close(their.seconds, our.seconds) else []
-    names += ["rpm"] if not _close(their.rpm, our.rpm) else []
-    feed = their.feed * their.rpm if their.per_revolution else their.feed
-    names += ["feed"] if our.kind != "rapid" and not _close(feed, our.feed) else []
+    if their.rpm is not None:
+        names += ["rpm"] if our.rpm is None or not _close(their.rpm, our.rpm) else []
+        feed = their.feed * their.rpm if their.per_revolution else their.feed
+        names += ["feed"] if our.kind != "rapid" and not _close(feed, our.feed) else []
     return names
 
 
