@@ -53,7 +53,7 @@ class MotionArrays:
         state: (n,) index of each motion's modal values in `states`.
         file: (n,) index of each motion's file in `files`.
         states: modal values, each combination once.
-        files: names of the program files.
+        files: names of the program files, each once.
     """
 
     kind: NDArray[np.uint8]
@@ -172,11 +172,13 @@ def concatenate(parts: Iterable[MotionArrays]) -> MotionArrays:
 
 
 def _joined(parts: Sequence[tuple[NDArray[np.int32], tuple[Any, ...]]]) -> tuple[NDArray[np.int32], tuple[Any, ...]]:
-    """Indices into several tables as indices into one, in which each value stands once."""
+    """Indices into several tables as indices into one, in which each value that is used stands once."""
     table: dict[Any, int] = {}
     columns = [np.empty(0, np.int32)]
     for index, values in parts:
-        places = np.array([table.setdefault(value, len(table)) for value in values], dtype=np.int32)
+        places = np.zeros(len(values), dtype=np.int32)
+        for used in np.flatnonzero(np.bincount(index, minlength=len(values))).tolist():
+            places[used] = table.setdefault(values[used], len(table))
         columns.append(places[index])
     return np.concatenate(columns), tuple(table)
 
@@ -231,7 +233,7 @@ class _Collector:
         stop = len(whole) - len(whole) % self._wanted
         for begin in range(0, stop, self._wanted):
             yield whole[begin : begin + self._wanted]
-        self._parts = [whole[stop:]]
+        self._parts = [concatenate([whole[stop:]])]
         self._count = len(whole) - stop
 
     def rest(self) -> Iterator[MotionArrays]:

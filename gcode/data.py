@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from gcode.actions import Action, Result, whole_number
 from gcode.events import NO_EXTRA, Point
-from gcode.frame import ORIGIN, difference, plus
+from gcode.frame import ORIGIN, Frame, difference, plus
 from gcode.modal import Command
 from gcode.offsets import additional_offset, axis_words, extra_value, extra_words, to_extra
 from gcode.settings import NUMBERED_OFFSETS, ToolOffset
@@ -133,36 +133,43 @@ def _set_tool_field(field: str, letter: str = "R") -> Action:
     return action
 
 
-def _set_tool_row(state: State, command: Command) -> Result:
-    """LinuxCNC's G10 L1: a row of the tool table from axis words and R, a radius."""
-    return _with_tool(*_tool_row(state, command, ORIGIN)), ()
-
-
 def _set_tool_row_here(state: State, command: Command) -> Result:
-    """LinuxCNC's G10 L10: offsets with which the tool would stand at the given program coordinates."""
-    gauge = state.frame.to_program(state.gauge_mm)
-    return _with_tool(*_tool_row(state, command, gauge, reverse=True)), ()
+    """LinuxCNC's G10 L10: the offset with which the tool would stand at the given program coordinates."""
+    return _row_from_position(state, command, state.frame)
 
 
 def _set_tool_row_at_fixture(state: State, command: Command) -> Result:
-    """LinuxCNC's G10 L11: as L10, in the coordinates of the last work offset without shift or rotation."""
-    zero = state.setup.offsets.get("G59.3", WorkOffset()).zero_mm
-    return _with_tool(*_tool_row(state, command, difference(state.gauge_mm, zero), reverse=True)), ()
+    """LinuxCNC's G10 L11: as L10, in the last work offset without a shift."""
+    fixture = replace(state, machine=replace(state.machine, wcs=NUMBERED_OFFSETS[-1]))
+    return _row_from_position(state, command, fixture.with_setup(shift_on=False).frame)
 
 
-def _tool_row(state: State, command: Command, at: Point, *, reverse: bool = False) -> tuple[State, int, ToolOffset]:
+def _row_from_position(state: State, command: Command, frame: Frame) -> Result:
+    number, row = _known_row(state, command)
+    gauge = state.gauge_mm
+    believed = frame.to_program(difference(gauge, (row.x_mm, row.y_mm, row.length_mm)))
+    x, y, z = difference(gauge, frame.to_machine(axis_words(state, command, believed)))
+    return _with_tool(state, number, replace(row, x_mm=x, y_mm=y, length_mm=z, **_radius_word(state, command))), ()
+
+
+def _set_tool_row(state: State, command: Command) -> Result:
+    """LinuxCNC's G10 L1: a row of the tool table from axis words and R, a radius."""
+    number, row = _known_row(state, command)
+    x, y, z = axis_words(state, command, (row.x_mm, row.y_mm, row.length_mm))
+    return _with_tool(state, number, replace(row, x_mm=x, y_mm=y, length_mm=z, **_radius_word(state, command))), ()
+
+
+def _known_row(state: State, command: Command) -> tuple[int, ToolOffset]:
     number = _tool_number(command)
-    if number not in state.setup.tools:
+    if number not in state.setup.tools and state.control.settings.tools is not None:
         word = command.words["P"]
         raise command.block.error(word, "unknown-tool", f"{word.text} is not in the tool table")
-    row = state.setup.tools[number]
-    old = (row.x_mm, row.y_mm, row.length_mm)
-    given = axis_words(state, command, difference(at, old) if reverse else old)
-    x, y, z = difference(at, given) if reverse else given
-    changes: dict[str, float] = {"x_mm": x, "y_mm": y, "length_mm": z}
-    if "R" in command.words:
-        changes["radius_mm"] = command.words["R"].value * state.modes.unit_mm
-    return state, number, replace(row, **changes)  # type: ignore[arg-type]
+    return number, state.setup.tools.get(number, ToolOffset())
+
+
+def _radius_word(state: State, command: Command) -> dict[str, float]:
+    word = command.words.get("R")
+    return {} if word is None else {"radius_mm": word.value * state.modes.unit_mm}
 
 
 def _with_tool(state: State, number: int, row: ToolOffset) -> State:

@@ -63,6 +63,9 @@ class Scope(Protocol):
     def exists(self, name: str) -> bool:
         """True where #<name> was set."""
 
+    def has(self, index: int) -> bool:
+        """True where there is a variable #index."""
+
 
 @dataclass(frozen=True, slots=True)
 class Expression:
@@ -300,7 +303,10 @@ def _existence(source: Source, bracket: int) -> tuple[Function, int]:
     _closing(source, bracket, end)
     name = variable.name
     if name is None:
-        return (lambda scope: 1.0), end + 1
+        index = variable.index
+        if index is None:
+            raise ValueError("a variable needs an index or a name")
+        return (lambda scope: float(scope.has(variable_number(index, scope)))), end + 1
     return (lambda scope: float(scope.exists(name))), end + 1
 
 

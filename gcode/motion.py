@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 from gcode.actions import Action, Result
 from gcode.arcs import arc
@@ -79,6 +80,7 @@ def _synchronised(state: State, command: Command) -> Result:
         end_mm=end,
         rapid=False,
         feed_mm_min=feed,
+        extra=state.extra,
     )
     return moved_to(settled(state, command), end), (event,)
 
@@ -91,9 +93,16 @@ def _rigid_tap(state: State, command: Command) -> Result:
     place, there = command.block.place, state.machine
     back = state.with_machine(spindle_direction=-there.spindle_direction).machine
     down = LinearMotion(
-        place=place, state=there, start_mm=start, end_mm=end, rapid=False, feed_mm_min=feed, tapping=True
+        place=place,
+        state=there,
+        start_mm=start,
+        end_mm=end,
+        rapid=False,
+        feed_mm_min=feed,
+        tapping=True,
+        extra=state.extra,
     )
-    up = LinearMotion(place=place, state=back, start_mm=end, end_mm=start, rapid=False, feed_mm_min=feed, tapping=True)
+    up = replace(down, state=back, start_mm=end, end_mm=start)
     return settled(state, command), (down, up)
 
 

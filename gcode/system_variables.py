@@ -247,7 +247,7 @@ class SystemVariables:
             return self._position()[axis]
         if name.startswith("_abs_") and len(name) == 6 and name[5] in "xyzabcuvw":
             state = self._state
-            return _nine(state.gauge_mm, state.extra, state.control.machine_unit_mm)["xyzabcuvw".index(name[5])]
+            return _nine(state.gauge_mm, state.extra, state.modes.unit_mm)["xyzabcuvw".index(name[5])]
         if name == "_call_level":
             return float(sum(level.kind == "routine" for level in self._runner.levels))
         return float(self._runner.place.line) if name == "_line" else None

@@ -97,6 +97,14 @@ class Variables:
         """True where #<name> was set, or is the control's."""
         return name in self._table(name) or self._system_name(name) is not None
 
+    def has(self, index: int) -> bool:
+        """True where there is a variable #index."""
+        try:
+            self.number(index)
+        except EvaluationError:
+            return False
+        return index > 0
+
     def _table(self, name: str) -> dict[str, float]:
         return self._global_names if name.startswith("_") else self._names[-1]
 

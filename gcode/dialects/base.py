@@ -7,7 +7,7 @@ these and never for a dialect's name.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal
 
@@ -23,18 +23,22 @@ class ArcTolerance:
     Attributes:
         absolute_mm: a difference up to this is always accepted.
         relative: a larger one is accepted up to this part of the radius...
-        largest_mm: ...and up to this length.
+        largest: ...and up to this length, in the program's unit.
     """
 
     absolute_mm: float
     relative: float = 0.0
-    largest_mm: float = 0.0
+    largest: float = 0.0
+
+    def in_unit(self, unit_mm: float) -> ArcTolerance:
+        """The tolerance for a program in a unit of `unit_mm`, with `largest` in mm."""
+        return self if not self.largest or unit_mm == 1.0 else replace(self, largest=self.largest * unit_mm)
 
     def accepts(self, start_radius_mm: float, end_radius_mm: float) -> bool:
         """True where an arc from one radius to the other is run."""
         difference = abs(start_radius_mm - end_radius_mm)
         relative = self.relative * max(start_radius_mm, end_radius_mm)
-        return difference <= self.absolute_mm or difference <= min(relative, self.largest_mm)
+        return difference <= self.absolute_mm or difference <= min(relative, self.largest)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

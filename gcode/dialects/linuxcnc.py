@@ -32,7 +32,7 @@ CODES: Table = {
     **executed("one-shot", "shift", {"G92.1": "shift to 0", "G92.2": "shift off", "G92.3": "shift on again"}),
     **executed("compensation", "radius", {"G41.1": "dynamic compensation left"}, "D"),
     **executed("compensation", "radius", {"G42.1": "dynamic compensation right"}, "D"),
-    **owning("length", "length", {"G43.1": "dynamic tool length offset"}, _ALL),
+    **owning("length", "length", {"G43.1": "dynamic tool length offset"}, "XYZ"),
     **executed("length", "length", {"G43.2": "additional tool length offset"}, "H"),
     **executed("work-offset", "work_offset", {f"G59.{n}": f"work offset {n + 6}" for n in (1, 2, 3)}),
     **executed("coolant", "coolant_on", {"M7": "mist coolant", "M8": "flood coolant"}),
@@ -94,6 +94,6 @@ LINUXCNC = Dialect(
     shift_is_rotated=True,
     semicolon_ends_block=False,
     leader=False,
-    arc_tolerance=ArcTolerance(absolute_mm=0.0127, relative=0.001, largest_mm=1.27),
+    arc_tolerance=ArcTolerance(absolute_mm=0.0127, relative=0.001, largest=1.27),
     radius_tolerance_mm=0.00127,
 )
