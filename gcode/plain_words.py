@@ -1,6 +1,7 @@
 """Many lines of plain words at once: a regular expression finds them, array arithmetic reads their numbers.
 
-A plain line is empty, or holds words N, G0, G1, X, Y, Z, F with plain numbers in any order, and nothing else.
+A plain line may begin with N, holds words G0, G1, X, Y, Z, F with plain numbers in any order, and nothing else; it may
+be empty.
 The numbers are the doubles that `float` gives for their text, to the last bit.
 """
 
@@ -16,14 +17,14 @@ from numpy.typing import NDArray
 _BLANKS = rb"[ \t]{0,9}+"
 #: Nine digits before the point stay below the largest number that a word may have.
 _UNSIGNED = rb"(?:[0-9]{1,9}+(?:\.[0-9]{0,30}+)?+|\.[0-9]{1,30}+)"
+_NUMBER = rb"[Nn]" + _BLANKS + rb"[0-9]{1,9}+(?!\.)" + _BLANKS
 _WORDS = (
     rb"[XYZxyz]" + _BLANKS + rb"[+-]?+" + _UNSIGNED,
-    rb"[Nn]" + _BLANKS + rb"[0-9]{1,9}+(?!\.)",
-    rb"[Gg]" + _BLANKS + rb"0?+[01](?![0-9.])",
+    rb"[Gg]" + _BLANKS + rb"(?:0[01]?+|1)(?![0-9.])",
     rb"[Ff]" + _BLANKS + rb"\+?+" + _UNSIGNED,
 )
-#: Every quantifier is possessive or of one character, so that the time grows with the text and not faster.
-_LINE = _BLANKS + rb"(?:(?:" + rb"|".join(_WORDS) + rb")" + _BLANKS + rb")*+\r?+\n"
+#: Every quantifier is possessive, so that nothing is tried twice and the time grows with the text and not faster.
+_LINE = _BLANKS + rb"(?:" + _NUMBER + rb")?+(?:(?:" + rb"|".join(_WORDS) + rb")" + _BLANKS + rb")*+\r?+\n"
 
 #: A whole number of so many digits is a double, and so is the power of ten that it is divided by.
 _EXACT_DIGITS = 15
