@@ -123,8 +123,8 @@ def plain_run(
             then not plain.
 
     Returns:
-        The lines up to the first one that is not plain or must be refused (no feed, a word given twice); None where
-        they are too few. The last line of a text without a line end is never plain.
+        The lines up to the first one that is not plain, is a motion code alone, or must be refused (no feed, a word
+        given twice); None where they are too few. The last line of a text without a line end is never plain.
     """
     end = plain_end(buffer, offset, max_lines)
     count = buffer.count(b"\n", offset, end)
@@ -189,8 +189,13 @@ class _Lines:
         return _Lines(self.start, line, {letter: column.before(line) for letter, column in self.columns.items()})
 
     def first_unread(self, *, increment: bool) -> int:
-        """The first line with a letter twice, or with a coordinate that counts increments; else their number."""
-        found = [self.count]
+        """The first line that is left to `step`; else their number.
+
+        It has a letter twice, a motion code without an axis word (which some controls take for a motion), or a
+        coordinate that counts increments.
+        """
+        codes = self.columns[_G].line
+        found = [self.count, *codes[~self._moved()[codes]][:1].tolist()]
         for letter, column in self.columns.items():
             refused = column.line[1:][column.line[1:] == column.line[:-1]]
             found.extend(refused[:1].tolist())

@@ -64,6 +64,8 @@ def plain_end(buffer: bytes, offset: int, max_lines: int) -> int:
 
     A last line without a line end is not one of them.
     """
+    if max_lines < 1:
+        return offset
     match = _lines(max_lines).match(buffer, offset, min(len(buffer), offset + MAX_BYTES))
     return offset if match is None else buffer.rfind(b"\n", offset, match.end()) + 1
 

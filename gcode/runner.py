@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from gcode import flow
 from gcode.blocks import ParsedBlock
-from gcode.bulk import PlainBatch, PlainStart, plain_run
+from gcode.bulk import MAX_LINES, PlainBatch, PlainStart, plain_run
 from gcode.calls import CallRequest, Library, StateRequest
 from gcode.dialects import Dialect
 from gcode.errors import GcodeError, Place
@@ -251,7 +251,8 @@ class Runner:
             feed_mm_min=feed,
             line=level.spot.line,
         )
-        run = plain_run(level.program.text, level.spot.offset, start, increment=False)
+        most = min(MAX_LINES, self.settings.limits.blocks - self._blocks)
+        run = plain_run(level.program.text, level.spot.offset, start, max_lines=most)
         if run is None:
             return None
         line = level.spot.line
@@ -288,6 +289,10 @@ def is_plain(state: State) -> bool:
         and state.frame.matrix is None
         and not modes.polar
         and not modes.diameter
+        and not modes.entering_data
+        and not modes.in_cycle
+        and not modes.rigid_tapping
+        and modes.spline_lead_mm is None
         and modes.unmoved_length_mm == 0.0
         and modes.surface_speed is None
         and state.machine.feed_mode == "per-minute"
