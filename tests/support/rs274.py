@@ -63,7 +63,7 @@ class Move:
         centre: of an arc; its coordinate along the plane's normal is 0.
         turns: signed turns of an arc, counter-clockwise positive.
         tool: number of the tool in the spindle.
-        rpm: commanded speed.
+        rpm: commanded speed; None where the control holds the surface speed (G96), of which a listing says no speed.
         direction: +1, -1 or 0 of the spindle.
         rounding: how far a point may be off by the decimals of a listing, mm; 0 where there is none.
     """
@@ -78,7 +78,7 @@ class Move:
     centre: Point = ORIGIN
     turns: int = 0
     tool: int = 0
-    rpm: float = 0.0
+    rpm: float | None = 0.0
     direction: int = 0
     rounding: float = 0.0
 
@@ -170,6 +170,8 @@ class Reader:
     per_revolution: bool = False
     synchronised: float = 0.0
     selected: int = 0
+    speed: float = 0.0
+    surface: bool = False
     now: Move = field(default_factory=lambda: Move(kind="rapid", end=ORIGIN))
     moves: list[Move] = field(default_factory=list)
 
@@ -193,7 +195,7 @@ class Reader:
     def add(self, move: Move) -> None:
         """Adds a move, with the feed that holds for it; tapping comes back to where it began."""
         if move.kind not in ("rapid", "dwell"):
-            by_angle = self.synchronised * self.now.rpm
+            by_angle = self.synchronised * self.speed
             revolution = self.per_revolution and not by_angle
             move = replace(move, feed=by_angle or self.feed, per_revolution=revolution)
         self.moves.append(replace(move, rounding=DECIMALS * self.unit * TERMS))
@@ -253,7 +255,13 @@ class Reader:
 
     def set_speed(self, _: str, numbers: list[float]) -> None:
         if numbers[0] == 0:
-            self.now = replace(self.now, rpm=numbers[1])
+            self.speed = numbers[1]
+            self.now = replace(self.now, rpm=None if self.surface else self.speed)
+
+    def set_speed_mode(self, _: str, numbers: list[float]) -> None:
+        if numbers[0] == 0:
+            self.surface = numbers[1] > 0.0
+            self.now = replace(self.now, rpm=None if self.surface else self.speed)
 
     def select_tool(self, _: str, numbers: list[float]) -> None:
         self.selected = int(numbers[0])
@@ -277,6 +285,7 @@ MODES: Mapping[str, Callable[[Reader, str, list[float]], None]] = {
     "START_SPEED_FEED_SYNC": Reader.synchronise,
     "STOP_SPEED_FEED_SYNCH": Reader.unsynchronise,
     "SET_SPINDLE_SPEED": Reader.set_speed,
+    "SET_SPINDLE_MODE": Reader.set_speed_mode,
     "SELECT_TOOL": Reader.select_tool,
     "CHANGE_TOOL": Reader.change_tool,
     "CHANGE_TOOL_NUMBER": Reader.set_tool,

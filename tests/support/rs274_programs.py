@@ -1,8 +1,15 @@
 """Random programs in LinuxCNC's language: what every snippet is made of, and putting them together.
 
 Values are chosen first and written as expressions afterwards, so that programs are right whatever the seed. What
-``rs274`` is known to do differently from a machine is left out: a change of units while a length offset holds, and
-splines, of which it says nothing.
+``rs274`` is known to do differently from a machine, or wrong, is left out:
+
+- a change of units while a length offset holds: it keeps the offset's number;
+- G43 without H after M61, or in the block of M6: the stand-alone program does not know the tool then;
+- a tool's offset in x and y together with a turned work offset: it is taken off in turned coordinates;
+- break out of a while loop: the next do loop of the program ends after its first pass;
+- M98 in a subroutine: the search for the program stumbles over an ``endsub`` on its way;
+- more than ten levels of calls, which are refused; feeds of more than one decimal over M72, which rounds them;
+- splines, of which it says nothing.
 """
 
 from __future__ import annotations
@@ -48,6 +55,7 @@ class Writer:
     Attributes:
         source: of all that is random.
         unit: mm per unit of length at this place of the program.
+        turning: True for a program that turns work offsets, False for one with tools that are off the spindle's axis.
         rotated: True where the active work offset may be turned, so that arcs are right in G17 only.
         depth: levels of O-words around this place.
         before: subroutines, which stand before the program.
@@ -57,6 +65,7 @@ class Writer:
     def __init__(self, seed: int) -> None:
         self.source = random.Random(seed)
         self.unit = 1.0
+        self.turning = self.source.random() < 0.5
         self.rotated = False
         self.depth = 0
         self.before: list[str] = []

@@ -72,7 +72,7 @@ def system_parameter(w: Writer) -> list[str]:
 
 
 def offset(w: Writer) -> list[str]:
-    turned = w.odds(0.3)
+    turned = w.turning and w.odds(0.3)
     w.rotated = w.rotated or turned
     turn = f" R{w.source.uniform(-180, 180):.3f}" if turned else ""
     return [
@@ -81,8 +81,8 @@ def offset(w: Writer) -> list[str]:
 
 
 def select(w: Writer) -> list[str]:
-    w.rotated = True
-    return [w.choice(*SYSTEMS)]
+    w.rotated = w.turning
+    return [w.choice(*(system for system in SYSTEMS if w.turning or system != "G55"))]
 
 
 def shift(w: Writer) -> list[str]:
@@ -110,26 +110,34 @@ def machine(w: Writer) -> list[str]:
     return [f"{w.choice('G0', 'G1')} G53 {w.axes()}"]
 
 
+def on_axis(w: Writer) -> list[int]:
+    """Tools that this program may measure."""
+    return [number for number, (_, x, y, _) in TOOLS.items() if not (w.turning and (x or y))]
+
+
 def length(w: Writer) -> list[str]:
-    number = w.source.choice(tuple(TOOLS))
-    dynamic = f"G43.1 Z{w.mm(30.0)}" + (f" X{w.mm(5.0)}" if w.odds(0.3) else "")
-    return [w.choice(f"G43 H{number}", "G43", "G49", dynamic, f"G43.2 H{number}"), f"G1 {w.axes()}"]
+    number = w.source.choice(on_axis(w))
+    dynamic = f"G43.1 Z{w.mm(30.0)}" + (f" X{w.mm(5.0)}" if w.odds(0.3) and not w.turning else "")
+    return [w.choice(f"G43 H{number}", "G49", dynamic, f"G43.2 H{number}"), f"G1 {w.axes()}"]
 
 
 def tool(w: Writer) -> list[str]:
-    number = w.source.choice((0, *TOOLS))
-    return [*w.source.choice(([f"T{number} M6"], [f"T{number}", "G0 X0", "M6"], [f"M61 Q{number}"])), "M3 S800"]
+    number = w.source.choice(on_axis(w))
+    measured = ["G43", f"G1 {w.axes()}"] if w.odds(0.5) else []
+    changed = w.source.choice(([f"T{number} M6"], [f"T{number}", "G0 X0", "M6"]))
+    return [*w.source.choice(([*changed, *measured], [f"M61 Q{number}"], ["T0 M6"])), "M3 S800"]
 
 
 def tool_data(w: Writer) -> list[str]:
-    number = w.source.choice(tuple(TOOLS))
-    words = w.choice(f"Z{w.mm(40.0)}", f"R{w.mm(2.0, 0.1)}", f"X{w.mm(4.0)} Z{w.mm(20.0)}")
+    number = w.source.choice(on_axis(w))
+    sideways = f"X{w.mm(4.0)} " if not w.turning else ""
+    words = w.choice(f"Z{w.mm(40.0)}", f"R{w.mm(2.0, 0.1)}", f"{sideways}Z{w.mm(20.0)}")
     return [f"G10 L{w.choice('1', '10', '11')} P{number} {words}", f"G43 H{number}", f"G1 {w.axes()}"]
 
 
 def units(w: Writer) -> list[str]:
     code, w.unit = w.source.choice((("G20", 25.4), ("G21", 1.0)))
-    return ["G49", code, f"F{200 / w.unit:.3f}"]
+    return ["G49", code, f"F{200 / w.unit:.1f}"]
 
 
 def cycle(w: Writer) -> list[str]:
@@ -163,7 +171,7 @@ def tapping(w: Writer) -> list[str]:
 
 
 def feed_mode(w: Writer) -> list[str]:
-    back = f"G94 F{200 / w.unit:.3f}"
+    back = f"G94 F{200 / w.unit:.1f}"
     turn = f"F{w.source.uniform(0.05, 0.4) / w.unit:.4f}"
     inverse = [f"G93 G1 {w.axes()} F{w.source.uniform(1, 9):.2f}", f"{w.axes()} F2.5"]
     return w.source.choice(
@@ -171,7 +179,7 @@ def feed_mode(w: Writer) -> list[str]:
             [*inverse, back],
             ["G93 G91", " ".join(w.arc_words()) + " F3", "G90 G17", back],
             ["S700 M3", f"G95 {turn}", f"G1 {w.axes()}", back],
-            [f"F{w.source.uniform(10, 900) / w.unit:.3f}"],
+            [f"F{w.source.uniform(10, 900) / w.unit:.1f}"],
         )
     )
 
@@ -228,7 +236,7 @@ def _round(w: Writer) -> str:
 
 def inner(w: Writer, count: int = 2) -> list[str]:
     """Snippets that run never, once or several times: an offset may be turned by then."""
-    w.depth, w.rotated = w.depth + 1, True
+    w.depth, w.rotated = w.depth + 1, w.turning
     lines = many(w, count)
     w.depth -= 1
     return lines
@@ -248,13 +256,19 @@ def condition(w: Writer) -> list[str]:
 
 def loop(w: Writer) -> list[str]:
     label, count = w.label(), f"#{60 + w.depth}"
-    leave = [f"O{label + 500} if [{count} EQ 2]", f"O{label} {w.choice('break', 'continue')}", f"O{label + 500} endif"]
     body = [f"{count} = [{count} + 1]", *inner(w), f"G91 G1 X[{count}]", "G90"]
     repeated = [f"O{label} repeat [{w.source.randrange(4)}]", *body, f"O{label} endrepeat"]
-    body += leave if w.odds(0.4) else []
-    first = [f"O{label} while [{count} LT 3]", *body, f"O{label} endwhile"]
-    last = [f"O{label} do", *body, f"O{label} while [{count} LT 3]"]
+    first = [f"O{label} while [{count} LT 3]", *leaving(w, label, count, "continue"), *body, f"O{label} endwhile"]
+    last = [f"O{label} do", *body, *leaving(w, label, count, "break", "continue"), f"O{label} while [{count} LT 3]"]
     return [f"{count} = 0", *w.source.choice((repeated, first, last))]
+
+
+def leaving(w: Writer, label: int, count: str, *how: str) -> list[str]:
+    """Sometimes: blocks that leave a loop, or go on with its next pass."""
+    if w.odds(0.6):
+        return []
+    raised = [f"{count} = [{count} + 1]"] if how == ("continue",) else []
+    return [f"O{label + 500} if [{count} EQ 2]", *raised, f"O{label} {w.choice(*how)}", f"O{label + 500} endif"]
 
 
 def call(w: Writer) -> list[str]:
@@ -281,7 +295,7 @@ def recursion(w: Writer) -> list[str]:
         *(f"O{label} sub", f"O{inside} if [#1 GT 0]", "G91 G1 X#1 Y[#1 * #2]", "G90"),
         *(f"O{label} call [#1 - 1] [#2 / 2]", "G1 Z#1", f"O{inside} endif", f"O{label} endsub"),
     ]
-    return [f"O{label} call [{w.source.randrange(1, 6)}] [{w.mm(3)}]"]
+    return [f"O{label} call [{w.source.randrange(1, 4)}] [{w.mm(3)}]"]
 
 
 def numbered_call(w: Writer) -> list[str]:
@@ -309,5 +323,4 @@ SNIPPETS = {
 }
 WEIGHTS = {"straight": 5, "arc": 4, "cycle": 2, "call": 2}
 #: Those with others in them, and what may not happen an unknown number of times.
-#: (``rs274`` looks for a numbered program from where the call stands, and trips over an ``endsub`` on its way.)
 NESTING, ONCE = {"condition", "loop", "call", "recursion", "numbered_call", "kept"}, {"units", "numbered_call"}

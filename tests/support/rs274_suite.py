@@ -24,7 +24,7 @@ from itertools import chain
 from pathlib import Path
 
 from gcode.errors import GcodeError
-from support.rs274 import RS274, moves_of, rows_of, run
+from support.rs274 import RS274, Move, moves_of, rows_of, run
 from support.rs274_blocks import record
 from support.rs274_compare import first_difference, lasting, our_moves, settings_of, timed
 from support.rs274_programs import mutated, write_tables
@@ -67,18 +67,20 @@ def verdict(program: Path) -> tuple[str, str]:
 
 def _verdict(program: Path) -> tuple[str, str]:
     table, parameters = (next(iter(sorted(program.parent.glob(f"*.{end}"))), None) for end in ("tbl", "var"))
-    settings = settings_of(table, parameters)
+    ours: list[Move] | GcodeError
+    try:  # ours first: the parameter file is written by the other
+        ours = our_moves(program, settings_of(table, parameters))
+    except GcodeError as error:
+        ours = error
+    except Exception as error:
+        return CRASH, f"ours: {type(error).__name__}: {error}"
     try:
         listing = run(program, table=table, parameters=parameters)
     except (subprocess.TimeoutExpired, RuntimeError) as error:
         return CRASH, f"theirs: {error}"
     refused = "" if listing.open_end else listing.error
-    try:
-        ours = our_moves(program, settings)
-    except GcodeError as error:
-        return (REFUSED, f"{refused}; ours: {error}") if refused else (STRICT, str(error))
-    except Exception as error:
-        return CRASH, f"ours: {type(error).__name__}: {error}"
+    if isinstance(ours, GcodeError):
+        return (REFUSED, f"{refused}; ours: {ours}") if refused else (STRICT, str(ours))
     if refused:
         return LAX, refused
     theirs = moves_of(listing.calls, rows_of(table))
