@@ -108,7 +108,12 @@ def measure(options: argparse.Namespace, folder: Path) -> dict[str, float | None
     path.write_bytes(text)
     longer.write_bytes(surface_program(options.long_lines, options.seed))
     none.write_text("M30\n")
-    ways = {"plain_run": run_plain, "arrays": run_arrays, "arrays_numbered": run_arrays, "events": run_events}
+    ways: dict[str, Callable[[bytes], None]] = {
+        "plain_run": run_plain,
+        "arrays": run_arrays,
+        "arrays_numbered": run_arrays,
+        "events": run_events,
+    }
     texts = {"arrays_numbered": surface_program(options.lines, options.seed, numbered=True)}
     if RS274:
         ways["rs274"] = rs274_runner(path)

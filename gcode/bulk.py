@@ -195,7 +195,7 @@ class _Lines:
         coordinate that counts increments.
         """
         codes = self.columns[_G].line
-        found = [self.count, *codes[~self._moved()[codes]][:1].tolist()]
+        found: list[int] = [self.count, *codes[~self._moved()[codes]][:1].tolist()]
         for letter, column in self.columns.items():
             refused = column.line[1:][column.line[1:] == column.line[:-1]]
             found.extend(refused[:1].tolist())

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pytest
@@ -18,6 +19,8 @@ from gcode.events import NO_EXTRA, ArcMotion, Dwell, Event, LinearMotion
 from gcode.interpret import interpret
 from gcode.motion_json import type_of
 from gcode.settings import MachineSettings
+
+_T = TypeVar("_T")
 
 SURFACE = "".join(f"X{i * 0.1:.3f} Z{-i % 7}.\n" for i in range(40))
 PROGRAM = f"""%
@@ -74,6 +77,17 @@ def of_events(events: list[Event], start_mm: tuple[float, float, float]) -> dict
     return {name: [row[index] for row in rows] for index, name in enumerate(COLUMNS)}
 
 
+def until_refused(source: Iterator[_T]) -> tuple[list[_T], str]:
+    """What comes before a refusal, and the refusal."""
+    taken: list[_T] = []
+    try:
+        for one in source:
+            taken.append(one)  # noqa: PERF402 what comes before a refusal counts
+    except GcodeError as error:
+        return taken, str(error)
+    return taken, ""
+
+
 def check(made: MotionArrays, expected: dict[str, list[Any]]) -> None:
     for name in COLUMNS:
         column = getattr(made, name)
@@ -105,20 +119,9 @@ def test_arrays_are_the_events(rows: int) -> None:
 )
 def test_arrays_are_the_events_up_to_a_refusal(lines: list[str], dialect: str, rows: int) -> None:
     text = "\n".join([*lines, "M30", ""])
-    events: list[Event] = []
-    parts: list[MotionArrays] = []
-    refusals = []
-    for taken, source in (
-        (events, interpret(text, dialect=dialect_named(dialect))),
-        (parts, motion_arrays(text, dialect=dialect_named(dialect), rows=rows)),
-    ):
-        refusals.append("")
-        try:
-            for one in source:
-                taken.append(one)
-        except GcodeError as error:
-            refusals[-1] = str(error)
-    assert refusals[0] == refusals[1]
+    events, refused = until_refused(interpret(text, dialect=dialect_named(dialect)))
+    parts, refused_too = until_refused(motion_arrays(text, dialect=dialect_named(dialect), rows=rows))
+    assert refused_too == refused
     check(concatenate(parts), of_events(events, (0.0, 0.0, 0.0)))
 
 
