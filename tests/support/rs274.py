@@ -44,7 +44,7 @@ TURNING: Mapping[str, int] = {
     "START_SPINDLE_COUNTERCLOCKWISE": -1,
     "STOP_SPINDLE_TURNING": 0,
 }
-CALL = re.compile(r"^\s*\d+ N\S*\s+([A-Z0-9_]+)\((.*)\)\s*$", re.MULTILINE)
+CALL = re.compile(r"^\s*\d+ N(?:\.+|\d*) *([A-Z][A-Z0-9_]+)\((.*)\)\s*$", re.MULTILINE)
 NUMBER = re.compile(r"-?(?:\d+\.?\d*(?:e[-+]?\d+)?|nan|inf)")
 
 

@@ -83,7 +83,7 @@ def _answer(block: str) -> tuple[Move, ...] | None:
         program = Path(made) / "program.ngc"
         program.write_text(program_of(block), newline="")
         listing = run(program, table=table, parameters=parameters)
-        if listing.error and not listing.open_end:
+        if listing.error:
             return None
         return tuple(moves_of(listing.calls, rows_of(table)))
 

@@ -6,7 +6,9 @@ Values are chosen first and written as expressions afterwards, so that programs 
 - a change of units while a length offset holds: it keeps the offset's number;
 - G43 without H after M61, or in the block of M6: the stand-alone program does not know the tool then;
 - a tool's offset in x and y together with a turned work offset: it is taken off in turned coordinates;
-- break out of a while loop: the next do loop of the program ends after its first pass;
+- break out of a while loop, after which the next do loop of the program ends with its first pass, and continue in a do
+  loop, after which the next repeat goes on too long;
+- G84 in G18 and G19, where it loses its place until the next tool change;
 - M98 in a subroutine: the search for the program stumbles over an ``endsub`` on its way;
 - more than ten levels of calls, which are refused; feeds of more than one decimal over M72, which rounds them;
 - splines, of which it says nothing.

@@ -147,7 +147,7 @@ def cycle(w: Writer) -> list[str]:
     depth = w.source.uniform(2.0, 12.0) / w.unit
     level = w.source.uniform(-5.0, 8.0) / w.unit
     bottom = -depth if relative else level - depth
-    words = w.choice(*CYCLES).format(q=f"{depth / 2.7:.3f}")
+    words = w.choice(*(name for name in CYCLES if name != "G84" or plane == "G17")).format(q=f"{depth / 2.7:.3f}")
     repeats = f" L{w.source.randrange(1, 4)}" if w.odds(0.4) and "G84" not in words else ""
     lines = [f"{w.choice('G98', 'G99')} {words} {first}{w.mm(20)} {second}{w.mm(20)} {normal}{bottom:.4f} R{level:.4f}"]
     lines += [f"{w.axes(first + second, 20.0)}{repeats}" for _ in range(w.source.randrange(3))]
@@ -259,16 +259,16 @@ def loop(w: Writer) -> list[str]:
     body = [f"{count} = [{count} + 1]", *inner(w), f"G91 G1 X[{count}]", "G90"]
     repeated = [f"O{label} repeat [{w.source.randrange(4)}]", *body, f"O{label} endrepeat"]
     first = [f"O{label} while [{count} LT 3]", *leaving(w, label, count, "continue"), *body, f"O{label} endwhile"]
-    last = [f"O{label} do", *body, *leaving(w, label, count, "break", "continue"), f"O{label} while [{count} LT 3]"]
+    last = [f"O{label} do", *body, *leaving(w, label, count, "break"), f"O{label} while [{count} LT 3]"]
     return [f"{count} = 0", *w.source.choice((repeated, first, last))]
 
 
-def leaving(w: Writer, label: int, count: str, *how: str) -> list[str]:
+def leaving(w: Writer, label: int, count: str, how: str) -> list[str]:
     """Sometimes: blocks that leave a loop, or go on with its next pass."""
     if w.odds(0.6):
         return []
-    raised = [f"{count} = [{count} + 1]"] if how == ("continue",) else []
-    return [f"O{label + 500} if [{count} EQ 2]", *raised, f"O{label} {w.choice(*how)}", f"O{label + 500} endif"]
+    raised = [f"{count} = [{count} + 1]"] if how == "continue" else []
+    return [f"O{label + 500} if [{count} EQ 2]", *raised, f"O{label} {how}", f"O{label + 500} endif"]
 
 
 def call(w: Writer) -> list[str]:
