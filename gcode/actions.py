@@ -208,7 +208,7 @@ def _name_tool(state: State, command: Command, word: Word) -> Result:
     return state.with_machine(tool=tool), (ToolChange(place=command.block.place, tool=tool),)
 
 
-def set_rigid_tapping(state: State, command: Command) -> Result:
+def set_rigid_tapping(state: State, _command: Command) -> Result:
     """M29: the tapping cycle that follows is rigid."""
     return state.with_modes(rigid_tapping=True), ()
 

@@ -196,7 +196,11 @@ def _radius_error(
 
 def _tolerance(state: State) -> ArcTolerance:
     given = state.control.settings.arc_tolerance_mm
-    return state.control.dialect.arc_tolerance.in_unit(state.modes.unit_mm) if given is None else ArcTolerance(absolute_mm=given)
+    return (
+        state.control.dialect.arc_tolerance.in_unit(state.modes.unit_mm)
+        if given is None
+        else ArcTolerance(absolute_mm=given)
+    )
 
 
 def _centre_from_radius(state: State, command: Command, ends: _Ends, word: Word) -> Point:

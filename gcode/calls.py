@@ -14,8 +14,27 @@ from gcode.state import State
 
 #: Variable of each argument word, list I of the manual (G65).
 _ARGUMENTS: Mapping[str, int] = {
-    **{"A": 1, "B": 2, "C": 3, "D": 7, "E": 8, "F": 9, "H": 11, "I": 4, "J": 5, "K": 6, "M": 13},
-    **{"Q": 17, "R": 18, "S": 19, "T": 20, "U": 21, "V": 22, "W": 23, "X": 24, "Y": 25, "Z": 26},
+    "A": 1,
+    "B": 2,
+    "C": 3,
+    "D": 7,
+    "E": 8,
+    "F": 9,
+    "H": 11,
+    "I": 4,
+    "J": 5,
+    "K": 6,
+    "M": 13,
+    "Q": 17,
+    "R": 18,
+    "S": 19,
+    "T": 20,
+    "U": 21,
+    "V": 22,
+    "W": 23,
+    "X": 24,
+    "Y": 25,
+    "Z": 26,
 }
 #: Groups of I, J, K in list II.
 _MOST_GROUPS = 10
@@ -56,11 +75,19 @@ def request_call(state: State, command: Command) -> Result:
     use = command.of_phase("call")[0]
     block, words = command.block, command.words
     number = whole_number(block, words["P"]) if "P" in words else None
-    count = whole_number(block, words["L"]) if "L" in words else whole_number(block, words["K"]) if "K" in words else None
+    count = (
+        whole_number(block, words["L"]) if "L" in words else whole_number(block, words["K"]) if "K" in words else None
+    )
     code = "M98" if use.rule.code == "M198" else use.rule.code
     if code in ("M97", "M98") and number is None and "Q" not in words and block.name is None:
         raise block.error(use.word, "missing-word", f"{use.word.text} without P", "P and the number of a program")
-    if code == "M98" and number is not None and number >= _PACK and state.control.dialect.packed_calls and count is None:
+    if (
+        code == "M98"
+        and number is not None
+        and number >= _PACK
+        and state.control.dialect.packed_calls
+        and count is None
+    ):
         count, number = divmod(number, _PACK)
     label = whole_number(block, words["Q"]) if "Q" in words else None
     count = 1 if count is None else count

@@ -128,7 +128,7 @@ def _set_tool_field(field: str, letter: str = "R") -> Action:
         row = state.setup.tools.get(number, ToolOffset())
         length = word.value * state.modes.unit_mm
         value = length if state.modes.absolute else getattr(row, field) + length
-        return _with_tool(state, number, replace(row, **{field: value})), ()
+        return _with_tool(state, number, row.with_column(field, value)), ()
 
     return action
 
@@ -148,15 +148,18 @@ def _row_from_position(state: State, command: Command, frame: Frame) -> Result:
     number, row = _known_row(state, command)
     gauge = state.gauge_mm
     believed = frame.to_program(difference(gauge, (row.x_mm, row.y_mm, row.length_mm)))
-    x, y, z = difference(gauge, frame.to_machine(axis_words(state, command, believed)))
-    return _with_tool(state, number, replace(row, x_mm=x, y_mm=y, length_mm=z, **_radius_word(state, command))), ()
+    place = difference(gauge, frame.to_machine(axis_words(state, command, believed)))
+    return _with_tool(state, number, _with_place(state, command, row, place)), ()
 
 
 def _set_tool_row(state: State, command: Command) -> Result:
     """LinuxCNC's G10 L1: a row of the tool table from axis words and R, a radius."""
     number, row = _known_row(state, command)
-    x, y, z = axis_words(state, command, (row.x_mm, row.y_mm, row.length_mm))
-    return _with_tool(state, number, replace(row, x_mm=x, y_mm=y, length_mm=z, **_radius_word(state, command))), ()
+    if command.words.keys().isdisjoint("XYZR"):
+        use = command.of_phase("data")[0].word
+        raise command.block.error(use, "missing-word", f"{use.text} sets nothing", "axis words or R")
+    place = axis_words(state, command, (row.x_mm, row.y_mm, row.length_mm))
+    return _with_tool(state, number, _with_place(state, command, row, place)), ()
 
 
 def _known_row(state: State, command: Command) -> tuple[int, ToolOffset]:
@@ -167,9 +170,11 @@ def _known_row(state: State, command: Command) -> tuple[int, ToolOffset]:
     return number, state.setup.tools.get(number, ToolOffset())
 
 
-def _radius_word(state: State, command: Command) -> dict[str, float]:
+def _with_place(state: State, command: Command, row: ToolOffset, place: Point) -> ToolOffset:
+    """The row with these offsets, and the radius of an R word."""
     word = command.words.get("R")
-    return {} if word is None else {"radius_mm": word.value * state.modes.unit_mm}
+    radius = row.radius_mm if word is None else word.value * state.modes.unit_mm
+    return replace(row, x_mm=place[0], y_mm=place[1], length_mm=place[2], radius_mm=radius)
 
 
 def _with_tool(state: State, number: int, row: ToolOffset) -> State:

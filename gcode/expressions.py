@@ -149,7 +149,7 @@ def _operand(source: Source, position: int, depth: int) -> tuple[Function, int]:
     number = _NUMBER.match(source.text, position)
     if number:
         value = float(number[0])
-        return (lambda scope: value), number.end()
+        return (lambda _scope: value), number.end()
     if source.at(position, "#"):
         variable, end = parse_variable(source, position, depth + 1)
         return _reading(variable), end

@@ -16,7 +16,7 @@ from gcode.expressions import Expression
 from gcode.level import Level
 from gcode.program import Program, Spot
 from gcode.state import State
-from gcode.statements import Assignment, End, Goto, IfThen, OWord, Output, Statement, While
+from gcode.statements import Assignment, End, Goto, IfThen, Output, OWord, Statement, While
 
 if TYPE_CHECKING:
     from gcode.runner import Runner
@@ -163,7 +163,7 @@ def _while(runner: Runner, block: ParsedBlock, statement: While) -> None:
         if at not in level.loops:
             level.loops.append(at)
         return
-    text, following = level.program.line_at(end.offset)
+    _, following = level.program.line_at(end.offset)
     level.jump(Spot(following, end.line + 1))
     level.loops = [loop for loop in level.loops if loop != at]
 
@@ -323,7 +323,9 @@ def _call_label(runner: Runner, block: ParsedBlock, request: CallRequest) -> Non
     enter(
         runner,
         block,
-        Level(program=level.program, spot=spot, start=spot, name=f"N{number}", repeats=request.count - 1, kind="program"),
+        Level(
+            program=level.program, spot=spot, start=spot, name=f"N{number}", repeats=request.count - 1, kind="program"
+        ),
     )
 
 
@@ -338,9 +340,7 @@ def _return(runner: Runner, block: ParsedBlock, request: CallRequest) -> Iterato
             return
         text = f"{request.word.text} in the main program starts it again; one round is run"
         yield Notice(place=block.place_of(request.word), code="round", text=text)
-        runner.state, events = through(
-            runner.state, None, (ProgramStop(place=block.place, optional=False, end=True),)
-        )
+        runner.state, events = through(runner.state, None, (ProgramStop(place=block.place, optional=False, end=True),))
         runner.state = replace(runner.state, ended=True)
         yield from events
         return

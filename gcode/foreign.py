@@ -1,1 +1,2 @@
-def recognise(head): return None
+def recognise(head):
+    return None

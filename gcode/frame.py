@@ -71,12 +71,12 @@ class Frame:
 
 
 def plus(a: Point, b: Point) -> Point:
-    """a + b."""
+    """A + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 def difference(a: Point, b: Point) -> Point:
-    """a - b."""
+    """A - b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
@@ -136,7 +136,9 @@ def scaling(factors: Point, centre_mm: Point = ORIGIN) -> Turning:
     return Turning(matrix=forward, inverse=back, centre_mm=centre_mm)
 
 
-def frame_of(zero_mm: Point, turnings: tuple[Turning, ...], *, shift_mm: Point = ORIGIN, extra: Extra = NO_EXTRA) -> Frame:
+def frame_of(
+    zero_mm: Point, turnings: tuple[Turning, ...], *, shift_mm: Point = ORIGIN, extra: Extra = NO_EXTRA
+) -> Frame:
     """The frame of a zero and of maps within it.
 
     Args:

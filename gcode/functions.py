@@ -12,7 +12,7 @@ Unary: TypeAlias = Callable[[float], float]
 
 #: LinuxCNC takes two values nearer than this as equal.
 _EQUAL = 1e-4
-#: Sines and cosines this near to a whole value of -1, 0, 1 are it, for right angles.
+#: Whole numbers below this are exact, so they have bits.
 _LARGEST_BITS = 1 << 53
 
 
@@ -81,7 +81,7 @@ def _remainder(a: float, b: float) -> float:
 
 def _power(a: float, b: float) -> float:
     try:
-        value = a**b
+        value: float | complex = a**b
     except (OverflowError, ZeroDivisionError):
         value = math.nan
     if isinstance(value, complex) or not math.isfinite(value):

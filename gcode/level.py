@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from gcode.blocks import ParsedBlock
 from gcode.errors import Call
-from gcode.program import Program, Spot
+from gcode.program import BEGINNING, Program, Spot
 from gcode.state import Modes
 
 
@@ -37,7 +37,7 @@ class Level:
     spot: Spot
     name: str = ""
     calls: tuple[Call, ...] = ()
-    start: Spot = Spot(0, 1)
+    start: Spot = BEGINNING
     repeats: int = 0
     owns_variables: bool = False
     kind: str = "main"

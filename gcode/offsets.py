@@ -39,6 +39,11 @@ def set_work_offset(state: State, command: Command) -> Result:
 
 
 def additional_offset(command: Command, word: Word) -> str:
+    """Name of the additional work offset that a P word counts.
+
+    Raises:
+        GcodeError: where there is none of that number.
+    """
     number = whole_number(command.block, word)
     if not 1 <= number <= ADDITIONAL_OFFSETS:
         expected = f"P1 to P{ADDITIONAL_OFFSETS}"
@@ -93,9 +98,7 @@ def _added_length(state: State, command: Command) -> Point:
 def axis_words(state: State, command: Command, otherwise: Point) -> Point:
     """The block's X, Y, Z words as lengths, mm; those that are missing are taken from `otherwise`."""
     words, unit = command.words, state.modes.unit_mm
-    x, y, z = (
-        words[axis].value * unit if axis in words else old for axis, old in zip(AXES, otherwise, strict=True)
-    )
+    x, y, z = (words[axis].value * unit if axis in words else old for axis, old in zip(AXES, otherwise, strict=True))
     return (x, y, z)
 
 
@@ -174,23 +177,27 @@ def _preset(state: State, command: Command) -> Result:
 def _without_axes(state: State, command: Command) -> Result:
     """G92 S: the largest speed of the spindle with a constant surface speed."""
     use = command.of_phase("shift")[0]
-    if "S" in command.words and "S" in state.control.dialect.free_letters and not state.control.dialect.shift_is_rotated:
+    if (
+        "S" in command.words
+        and "S" in state.control.dialect.free_letters
+        and not state.control.dialect.shift_is_rotated
+    ):
         limit = not_negative(command.block, command.words["S"])
         return state.with_modes(surface_speed_limit=limit), ()
     raise command.block.error(use.word, "missing-axis", f"{use.word.text} names no axis", "at least one of X, Y, Z")
 
 
-def _reset_shift(state: State, command: Command) -> Result:
+def _reset_shift(state: State, _command: Command) -> Result:
     """G92.1: no shift, and none kept."""
     return state.with_setup(shift=WorkOffset(), local_mm=ORIGIN, shift_on=True), ()
 
 
-def _suspend_shift(state: State, command: Command) -> Result:
+def _suspend_shift(state: State, _command: Command) -> Result:
     """G92.2: no shift, and it is kept."""
     return state.with_setup(shift_on=False), ()
 
 
-def _resume_shift(state: State, command: Command) -> Result:
+def _resume_shift(state: State, _command: Command) -> Result:
     """G92.3: the shift that was kept."""
     return state.with_setup(shift_on=True), ()
 
@@ -210,6 +217,7 @@ def extra_value(state: State, word: Word) -> float:
 
 
 def extra_words(state: State, command: Command, otherwise: Extra) -> Extra:
+    """The block's words of further axes; those that are missing are taken from `otherwise`."""
     return to_extra(
         [
             extra_value(state, command.words[axis]) if axis in command.words else old
@@ -219,6 +227,7 @@ def extra_words(state: State, command: Command, otherwise: Extra) -> Extra:
 
 
 def to_extra(values: list[float]) -> Extra:
+    """Six values as positions of the further axes."""
     a, b, c, u, v, w = values
     return (a, b, c, u, v, w)
 

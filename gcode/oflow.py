@@ -103,9 +103,7 @@ def _end_sub(runner: Runner, block: ParsedBlock, word: OWord) -> None:
 
 def _call(runner: Runner, block: ParsedBlock, word: OWord) -> None:
     label = _label(runner, block, word)
-    arguments = {
-        number: _value(runner, block, expression) for number, expression in enumerate(word.arguments, start=1)
-    }
+    arguments = {number: _value(runner, block, expression) for number, expression in enumerate(word.arguments, start=1)}
     if len(arguments) > _ARGUMENTS:
         raise block.error_at(word.column, "o-word", f"a call with {len(arguments)} arguments", f"{_ARGUMENTS} at most")
     found = runner.library.routine(runner.level.program, label)
@@ -196,8 +194,8 @@ def _end_while(runner: Runner, block: ParsedBlock, word: OWord) -> None:
     runner.level.jump(head.spot)
 
 
-def _do(runner: Runner, block: ParsedBlock, word: OWord) -> None:
-    return
+def _do(_runner: Runner, _block: ParsedBlock, _word: OWord) -> None:
+    """The head of a do loop: its end, a while, does all."""
 
 
 def _repeat(runner: Runner, block: ParsedBlock, word: OWord) -> None:

@@ -68,7 +68,7 @@ def parse_blocks(place: Place, dialect: Dialect = FANUC, *, block_delete: bool =
 def _plain_words(place: Place) -> tuple[Word, ...]:
     words = []
     for match in _PLAIN_WORD.finditer(place.text):
-        whole, letter, number = match.groups()
+        _, letter, number = match.groups()
         value = float(number)
         if not abs(value) <= MAX_VALUE:
             raise _too_large(place, match.start(1), letter.upper() + number)
@@ -177,9 +177,7 @@ def _head(place: Place, source: Source, words: list[Word], *, block_delete: bool
     return position, False
 
 
-def _words(
-    place: Place, source: Source, position: int, words: list[Word], comments: tuple[str, ...]
-) -> ParsedBlock:
+def _words(place: Place, source: Source, position: int, words: list[Word], comments: tuple[str, ...]) -> ParsedBlock:
     assignments = []
     name: str | None = None
     while position < len(source.text):
@@ -242,9 +240,7 @@ def _one_sign(digits: str) -> str:
     return ("-" if signs.count("-") % 2 else "") + bare
 
 
-def _worked_out(
-    place: Place, source: Source, start: int, letter: str, position: int, digits: str
-) -> tuple[Word, int]:
+def _worked_out(place: Place, source: Source, start: int, letter: str, position: int, digits: str) -> tuple[Word, int]:
     """A word whose number is an expression."""
     following = source.text[position + len(digits) : position + len(digits) + 1]
     column = source.column(start)

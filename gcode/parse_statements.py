@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from gcode.blocks import ParsedBlock
 from gcode.expressions import Expression, Source, parse_operand, parse_variable
-from gcode.statements import Assignment, End, Goto, IfThen, OKeyword, OWord, Output, Statement, While
+from gcode.statements import Assignment, End, Goto, IfThen, OKeyword, Output, OWord, Statement, While
 
 _OUTPUT = re.compile(r"POPEN|PCLOS|DPRNT|BPRNT|SETVN")
 _LOOP = re.compile(r"(DO|END)(\d+)")

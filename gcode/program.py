@@ -23,7 +23,9 @@ MAX_BYTES = 1 << 30
 HEAD_BYTES = 1 << 15
 
 _LABEL = re.compile(rb"^[ \t]*(?:/\d?[ \t]*)?N[ \t]*0*(\d+)(?![\d.])", re.IGNORECASE | re.MULTILINE)
-_NUMBERED = re.compile(rb"^[ \t]*(?:/\d?[ \t]*)?[O:][ \t]*0*(\d+)[ \t]*(?=[\r\n;(%/]|\Z|[A-NP-Za-np-z])", re.IGNORECASE | re.MULTILINE)
+_NUMBERED = re.compile(
+    rb"^[ \t]*(?:/\d?[ \t]*)?[O:][ \t]*0*(\d+)[ \t]*(?=[\r\n;(%/]|\Z|[A-NP-Za-np-z])", re.IGNORECASE | re.MULTILINE
+)
 _O_LINE = re.compile(
     rb"^[ \t]*(?:/\d?[ \t]*)?(?:N[ \t]*\d+[ \t]*)?O[ \t]*(<[^>\r\n]*>|\d+)[ \t]*"
     rb"(endsub|endif|endwhile|endrepeat|elseif|else|sub|call|return|if|while|do|break|continue|repeat)(?![A-Za-z])",
@@ -41,6 +43,10 @@ class Spot(NamedTuple):
 
     offset: int
     line: int
+
+
+#: The first line.
+BEGINNING = Spot(0, 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,17 +99,17 @@ class Program:
         """Length in bytes."""
         return len(self.text)
 
-    def spot_of(self, offset: int, known: Spot = Spot(0, 1)) -> Spot:
+    def spot_of(self, offset: int, known: Spot = BEGINNING) -> Spot:
         """The spot at an offset, counted from an earlier `known` one."""
         if offset < known.offset:
-            known = Spot(0, 1)
+            known = BEGINNING
         return Spot(offset, known.line + self.text.count(b"\n", known.offset, offset))
 
     @cached_property
     def programs(self) -> dict[int, Spot]:
         """First spot of every numbered program, the line of its O word, by number."""
         found: dict[int, Spot] = {}
-        spot = Spot(0, 1)
+        spot = BEGINNING
         for match in _NUMBERED.finditer(self.text):
             spot = self.spot_of(self._line_start(match.start()), spot)
             found.setdefault(int(match[1]), spot)
@@ -126,7 +132,7 @@ class Program:
     @cached_property
     def _labels(self) -> dict[int, list[Spot]]:
         found: dict[int, list[Spot]] = {}
-        spot = Spot(0, 1)
+        spot = BEGINNING
         for match in _LABEL.finditer(self.text):
             spot = self.spot_of(self._line_start(match.start()), spot)
             found.setdefault(int(match[1]), []).append(spot)
@@ -141,7 +147,7 @@ class Program:
     @cached_property
     def _loop_words(self) -> list[tuple[Spot, str, int]]:
         found = []
-        spot = Spot(0, 1)
+        spot = BEGINNING
         for match in _LOOP.finditer(self.text):
             spot = self.spot_of(self._line_start(match.start()), spot)
             found.append((spot, match[1].decode().upper(), int(match[2])))
@@ -170,7 +176,7 @@ class Program:
     def o_lines(self) -> list[OLine]:
         """All lines with O-words, in order."""
         found = []
-        spot = Spot(0, 1)
+        spot = BEGINNING
         for match in _O_LINE.finditer(self.text):
             spot = self.spot_of(self._line_start(match.start()), spot)
             found.append(OLine(spot, canonical_label(match[1].decode("latin-1")), match[2].decode().lower()))

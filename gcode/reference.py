@@ -97,9 +97,7 @@ def _return_from(state: State, command: Command) -> Result:
     if via is None:
         word = command.of_phase("reference")[0].word
         raise command.block.error(word, "missing-reference", f"{word.text} before any G28 or G30", "G28 or G30 first")
-    x, y, z = (
-        there if axis in named else here for axis, there, here in zip(AXES, via, state.position_mm, strict=True)
-    )
+    x, y, z = (there if axis in named else here for axis, there, here in zip(AXES, via, state.position_mm, strict=True))
     state, first = straight(state, command, (x, y, z), rapid=True)
     state, second = straight(state, command, programmed_end(state, command), rapid=True)
     return state, first + second

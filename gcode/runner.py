@@ -136,9 +136,7 @@ class Runner:
         self.place = blocks[0].place
         return blocks[0]
 
-    def _parse_line(
-        self, level: Level, offset: int, key: tuple[int, int]
-    ) -> tuple[tuple[ParsedBlock, ...], int]:
+    def _parse_line(self, level: Level, offset: int, key: tuple[int, int]) -> tuple[tuple[ParsedBlock, ...], int]:
         text, following = level.program.line_at(offset)
         place = Place(file=level.program.file, line=level.spot.line, text=text, calls=level.calls)
         try:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal
 
 from gcode.events import Point
 
@@ -51,6 +51,10 @@ class ToolOffset:
         for entry in fields(self):
             if entry.name.endswith("_mm"):
                 object.__setattr__(self, entry.name, _length(entry.name, getattr(self, entry.name)))
+
+    def with_column(self, name: str, value: float) -> ToolOffset:
+        """This row with another value in the column of that name."""
+        return replace(self, **{name: value})  # type: ignore[arg-type]
 
     @property
     def whole_length_mm(self) -> float:
@@ -136,7 +140,7 @@ class MachineSettings:
         points = {n: _point(f"reference_points_mm[{n}]", v) for n, v in self.reference_points_mm.items()}
         self._freeze("reference_points_mm", points)
         if self.tools is not None:
-            self._freeze("tools", dict(self.tools))
+            self._freeze("tools", {**self.tools})
         self._freeze("variables", {n: _length(f"variables[{n}]", v) for n, v in self.variables.items()})
         for name in ("external_offset_mm", "home_mm", "start_mm"):
             object.__setattr__(self, name, _point(name, getattr(self, name)))
@@ -151,7 +155,7 @@ class MachineSettings:
         _choice("decimal_point", self.decimal_point, ("calculator", "increment"))
         _choice("compensation_startup", self.compensation_startup, ("A", "B"))
 
-    def _freeze(self, name: str, values: Mapping[object, object]) -> None:
+    def _freeze(self, name: str, values: Mapping[Any, Any]) -> None:
         object.__setattr__(self, name, MappingProxyType(values))
 
 

@@ -62,6 +62,10 @@ def step(state: State, block: ParsedBlock, *, first_of_program: bool = False) ->
 
 
 def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...]]:
+    machine_move = command.code("G53")
+    if machine_move and "motion" not in command.phases:
+        word = machine_move.word
+        raise command.block.error(word, "missing-axis", f"{word.text} names no axis", "at least one of X, Y, Z")
     first = Block(place=command.block.place)
     events: list[Event] = []
     if state.path is None:
@@ -73,9 +77,7 @@ def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...
         _check_under_compensation(state, command)
     for phase in command.phases:
         state, more = PHASES[phase](state, command)
-        if phase == "radius":
-            events.extend(more)
-        elif state.path is None and not _asks_corner(command):
+        if phase == "radius" or (state.path is None and not _asks_corner(command)):
             events.extend(more)
         else:
             state, ready = through(state, command if phase == "motion" else None, more)

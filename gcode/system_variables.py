@@ -184,7 +184,7 @@ class SystemVariables:
             return True
         if column is not None:
             name, number = column
-            row = replace(state.setup.tools.get(number, ToolOffset()), **{name: value * unit})
+            row = state.setup.tools.get(number, ToolOffset()).with_column(name, value * unit)
             tools = MappingProxyType({**state.setup.tools, number: row})
             self._runner.state = state.with_setup(tools=tools)
             return True
@@ -198,47 +198,62 @@ class SystemVariables:
         stored = self._runner.spare.get(index)
         if stored is not None and (stored[1] is state.setup or index not in _OFFSET_PARAMETERS):
             return stored[0]
-        if 5161 <= index <= 5169 or 5181 <= index <= 5189:
-            point, extra = state.setup.references.get(1 if index < 5180 else 2, (ORIGIN, NO_EXTRA))
-            return _nine(point, extra, machine)[index % 10 - 1 if index < 5180 else index - 5181]
-        if index == 5210:
-            return float(state.setup.shift_on and state.setup.shift != WorkOffset())
-        if 5211 <= index <= 5219:
-            return _nine(state.setup.shift.zero_mm, state.setup.shift.extra, machine)[index - 5211]
-        if index == 5220:
-            return float(NUMBERED_OFFSETS.index(state.machine.wcs) + 1) if state.machine.wcs in NUMBERED_OFFSETS else 0.0
-        if 5221 <= index <= 5390:
-            return self._linuxcnc_offset(index, machine)
+        for numbers, reader in self._linuxcnc:
+            if index in numbers:
+                return reader(index - numbers[0], machine)
         if index in _LINUXCNC_TOOL:
             return _LINUXCNC_TOOL[index](state)
-        if 5401 <= index <= 5409:
-            return _nine(state.tool_offset_mm, NO_EXTRA, machine)[index - 5401]
-        if 5420 <= index <= 5428:
-            return self._position()[index - 5420]
         if 0 < index < _PARAMETERS:
             return 1.0 if index == _DEBUG_OUTPUT else 0.0
         raise _unknown(index, "no parameter of this control")
+
+    @property
+    def _linuxcnc(self) -> tuple[tuple[range, Callable[[int, float], float]], ...]:
+        """Ranges of LinuxCNC's parameters, and what gives one from its place in the range and the machine's unit."""
+        state = self._state
+        setup, wcs = state.setup, state.machine.wcs
+        first, second = (setup.references.get(n, (ORIGIN, NO_EXTRA)) for n in (1, 2))
+        return (
+            (range(5161, 5170), lambda n, unit: _nine(*first, unit)[n]),
+            (range(5181, 5190), lambda n, unit: _nine(*second, unit)[n]),
+            (range(5210, 5211), lambda _n, _unit: float(setup.shift_on and setup.shift != WorkOffset())),
+            (range(5211, 5220), lambda n, unit: _nine(setup.shift.zero_mm, setup.shift.extra, unit)[n]),
+            (
+                range(5220, 5221),
+                lambda _n, _unit: NUMBERED_OFFSETS.index(wcs) + 1.0 if wcs in NUMBERED_OFFSETS else 0.0,
+            ),
+            (range(5221, 5391), self._linuxcnc_offset),
+            (range(5401, 5410), lambda n, unit: _nine(state.tool_offset_mm, NO_EXTRA, unit)[n]),
+            (range(5420, 5429), lambda n, _unit: self._position()[n]),
+        )
 
     def _position(self) -> tuple[float, ...]:
         state = self._state
         extra = to_extra([a - b for a, b in zip(state.extra, state.frame.extra, strict=True)])
         return _nine(state.program_mm, extra, state.modes.unit_mm)
 
-    def _linuxcnc_offset(self, index: int, machine: float) -> float:
-        number, axis = divmod(index - 5221, 20)
+    def _linuxcnc_offset(self, place: int, machine: float) -> float:
+        number, axis = divmod(place, 20)
         offset = self._state.setup.offsets.get(NUMBERED_OFFSETS[number], WorkOffset())
         if axis == 9:
             return offset.rotation_deg
         return _nine(offset.zero_mm, offset.extra, machine)[axis] if axis < 9 else 0.0
 
     def _write_linuxcnc(self, index: int, value: float | None) -> None:
-        """Stores a parameter. LinuxCNC reads offsets from them only when it starts, so nothing is moved by it."""
+        """Stores a parameter. LinuxCNC reads work offsets from them only when it starts, so none is moved by it."""
         if not 0 < index < _PARAMETERS or index in range(5400, 5430):
             raise EvaluationError("read-only-variable", f"#{index} cannot be set", "a parameter that can be written")
+        for number, first in ((1, 5161), (2, 5181)):
+            if first <= index < first + 3:
+                length = (value or 0.0) * self._state.control.machine_unit_mm
+                self._runner.state = _with_reference(self._state, number, index - first, length)
+                return
         self._runner.spare[index] = (value or 0.0, self._state.setup)
 
     def named(self, name: str) -> float | None:
         """Value of one of the control's named parameters, None where there is none of that name."""
+        if name in _CONSTANTS:
+            return _CONSTANTS[name]
         reader = _NAMED.get(name)
         if reader is not None:
             return float(reader(self._state))
@@ -300,17 +315,17 @@ def _with_zero(state: State, name: str, axis: int, value_mm: float) -> State:
     return state.with_setup(offsets=MappingProxyType({**state.setup.offsets, name: new}))
 
 
+def _with_reference(state: State, number: int, axis: int, value_mm: float) -> State:
+    point, extra = state.setup.references.get(number, (ORIGIN, NO_EXTRA))
+    references = MappingProxyType({**state.setup.references, number: (_changed(point, axis, value_mm), extra)})
+    return state.with_setup(references=references)
+
+
 _LINUXCNC_TOOL: Mapping[int, Callable[[State], float]] = {
-    5399: lambda s: 0.0,
     5400: lambda s: float(s.machine.tool),
     5410: lambda s: 2.0 * s.setup.tools.get(s.machine.tool, ToolOffset()).radius_mm / s.control.machine_unit_mm,
-    5411: lambda s: 0.0,
-    5412: lambda s: 0.0,
-    5413: lambda s: 0.0,
 }
 _NAMED: Mapping[str, Callable[[State], Any]] = {
-    "_vmajor": lambda s: 2.9,
-    "_vminor": lambda s: 0.0,
     "_motion_mode": lambda s: 10.0 * _code(s.modes.motion),
     "_plane": lambda s: 10.0 * s.machine.plane,
     "_ccomp": lambda s: 10.0 * _SIDE_CODES[s.machine.compensation],
@@ -334,18 +349,23 @@ _NAMED: Mapping[str, Callable[[State], Any]] = {
     "_spindle_cw": lambda s: s.machine.spindle_direction == 1,
     "_mist": lambda s: s.modes.mist,
     "_flood": lambda s: s.modes.flood,
-    "_speed_override": lambda s: 1.0,
-    "_feed_override": lambda s: 1.0,
-    "_adaptive_feed": lambda s: 0.0,
-    "_feed_hold": lambda s: 1.0,
     "_feed": lambda s: s.modes.feed / s.modes.unit_mm,
     "_rpm": lambda s: s.machine.spindle_rpm,
     "_current_tool": lambda s: s.machine.tool,
     "_current_pocket": lambda s: s.setup.tools.get(s.machine.tool, ToolOffset()).pocket or 0,
     "_selected_tool": lambda s: 0 if s.modes.next_tool is None else s.modes.next_tool,
     "_selected_pocket": lambda s: 0 if s.modes.next_tool is None else s.modes.next_tool,
-    "_value": lambda s: 0.0,
-    "_value_returned": lambda s: 0.0,
-    "_task": lambda s: 0.0,
-    "_remap_level": lambda s: 0.0,
+}
+#: LinuxCNC's names that have one value here.
+_CONSTANTS: Mapping[str, float] = {
+    "_vmajor": 2.9,
+    "_vminor": 0.0,
+    "_speed_override": 1.0,
+    "_feed_override": 1.0,
+    "_adaptive_feed": 0.0,
+    "_feed_hold": 1.0,
+    "_value": 0.0,
+    "_value_returned": 0.0,
+    "_task": 0.0,
+    "_remap_level": 0.0,
 }

@@ -127,11 +127,16 @@ def _with_mirror(state: State, axes: set[str], centre: Point | None, named: set[
     return _with(state, "mirror", scaling((factors[0], factors[1], factors[2]), (x, y, z)))
 
 
-def _polar(state: State, command: Command, use: Use) -> State:
+def _polar(state: State, _command: Command, _use: Use) -> State:
     """G16: the plane's first axis is a radius, its second an angle; with G91 about where the tool is."""
     centre = None if state.modes.absolute else state.program_mm
     return state.with_modes(polar=True, polar_centre_mm=centre)
 
 
-_SETTERS: Mapping[str, Callable[[State, Command, Use], State]] = {"G68": _rotate, "G51": _scale, "G51.1": _mirror, "G16": _polar}
+_SETTERS: Mapping[str, Callable[[State, Command, Use], State]] = {
+    "G68": _rotate,
+    "G51": _scale,
+    "G51.1": _mirror,
+    "G16": _polar,
+}
 TURNING_ACTIONS: Mapping[str, Action] = {"turning": set_turning, "turning_off": clear_turning}

@@ -1,4 +1,4 @@
-"""The variables of both macro languages: locals of every level of calls, common ones, and system variables by a hook."""
+"""The variables of both macro languages: locals of every level of calls, common ones, and the control's by a hook."""
 
 from __future__ import annotations
 

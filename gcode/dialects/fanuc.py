@@ -47,12 +47,16 @@ CODES: Table = {
     **noticed("speed-check", {"G25": "spindle speed check off"}),
     **executed("rigid-tap", "rigid_tapping", {"M29": "rigid tapping mode"}),
     **noticed("clamp", {"M10": "clamp", "M11": "unclamp"}),
-    **refused("rotation", {"G68.2": f"tilted working plane: {FIVE_AXIS}", "G68.3": f"tilted working plane: {FIVE_AXIS}"}),
+    **refused(
+        "rotation", {"G68.2": f"tilted working plane: {FIVE_AXIS}", "G68.3": f"tilted working plane: {FIVE_AXIS}"}
+    ),
     **refused("polar-interpolation", {"G12.1": "polar coordinate interpolation"}),
     **refused("length", {"G43.1": f"tool axis length offset: {FIVE_AXIS}"}),
     **refused("length", {"G43.4": f"tool centre point control: {FIVE_AXIS}"}),
     **refused("length", {"G43.5": f"tool centre point control: {FIVE_AXIS}"}),
-    **refused("compensation", {f"G4{n}.{k}": f"3-D cutter compensation: {FIVE_AXIS}" for n in (1, 2) for k in range(2, 7)}),
+    **refused(
+        "compensation", {f"G4{n}.{k}": f"3-D cutter compensation: {FIVE_AXIS}" for n in (1, 2) for k in range(2, 7)}
+    ),
     **refused("motion", {"G2.2": "involute", "G3.2": "involute", "G6.2": "NURBS", "G33": "threading"}),
     **refused("motion", {"G2.3": "exponential", "G3.3": "exponential", "G2.4": "3-D arc", "G3.4": "3-D arc"}),
     **refused("one-shot", {"G7.1": "cylindrical interpolation", "G107": "cylindrical interpolation"}),

@@ -22,7 +22,7 @@ CODES: Table = {
     **executed("motion-cancel", "modes", {"G80": "motion cancel"}),
     **executed("one-shot", "dwell", {"G4": "dwell"}, "P"),
     **executed("diameter", "modes", {"G7": "diameter mode", "G8": "radius mode"}),
-    **owning("one-shot", "data", {"G10": "offset data setting"}, "LPRIJQ" + _ALL),
+    **owning("one-shot", "data", {"G10": "offset data setting"}, "LPR" + _ALL),
     **owning("one-shot", "reference", {"G28": "return to the reference point"}, _ALL),
     **owning("one-shot", "reference", {"G30": "return to the second reference point"}, _ALL),
     **executed("one-shot", "reference", {"G28.1": "store the reference point"}),
@@ -40,7 +40,9 @@ CODES: Table = {
     **executed("spindle", "spindle_off", {"M19": "spindle orientation"}, "RPQ"),
     **executed("stop", "stop", {"M60": "pallet change stop"}),
     **executed("tool-change", "tool_change", {"M61": "set the current tool"}, "Q"),
-    **executed("state", "state", {"M70": "save state", "M71": "drop state", "M72": "restore state", "M73": "save state"}),
+    **executed(
+        "state", "state", {"M70": "save state", "M71": "drop state", "M72": "restore state", "M73": "save state"}
+    ),
     **noticed("path", {"G61": "exact path", "G61.1": "exact stop"}),
     **noticed("path", {"G64": "path blending"}, "PQ"),
     **noticed("override", {"M50": "feed override", "M51": "speed override", "M53": "feed stop"}, "P"),
