@@ -18,7 +18,7 @@ import numpy as np
 from gcode.dialects import dialect_named
 from gcode.events import Block, Event, ToolChange
 from gcode.interpret import interpret
-from gcode.source import read_program
+from gcode.program import read_program
 from twin.arrays import FloatArray
 from twin.cutting.engagement import NO_ENGAGEMENT, EngagementMap
 from twin.errors import CollisionError, ReplayError

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from gcode.settings import MachineSettings
+from gcode.settings import MachineSettings, ToolOffset
 from twin.arrays import FloatArray, frozen
 from twin.cutting.coefficients import CuttingCoefficients
 from twin.cutting.engagement import Engager
@@ -155,16 +155,16 @@ def machine_settings(job: Job, slices: SliceSet) -> MachineSettings:
     Without a home position in the job it is over the middle of the stock, above it and the longest tool.
     """
     machine = job.machine
-    lengths = {t.number: t.length_mm for t in job.tools}
+    tools = {t.number: ToolOffset(length_mm=t.length_mm, radius_mm=t.diameter_mm / 2.0) for t in job.tools}
     origin = np.array(machine.offsets[job.stock.wcs])
     middle = origin + 0.5 * (slices.low_mm + slices.high_mm)
-    top = float(origin[2] + slices.high_mm[2]) + max(lengths.values(), default=0.0) + HOME_CLEARANCE_MM
+    top = float(origin[2] + slices.high_mm[2]) + max((tool.length_mm for tool in tools.values()), default=0.0) + HOME_CLEARANCE_MM
     home = machine.home_mm or (float(middle[0]), float(middle[1]), top)
     return MachineSettings(
         offsets={str(name): place for name, place in machine.offsets.items()},
         home_mm=home,
         start_mm=machine.start_mm or home,
-        length_offsets_mm=lengths,
+        tools=tools,
         tool=job.program.tool,
         arc_centres=job.program.arc_centres,
         block_delete=job.program.block_delete,
