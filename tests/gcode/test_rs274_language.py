@@ -15,7 +15,7 @@ from support.rs274 import RS274, moves_of, rows_of, run
 from support.rs274_blocks import Recorded, answers, recorded
 from support.rs274_compare import first_difference, lasting, our_moves, our_moves_of_text, settings_of, timed
 from support.rs274_programs import mutated, write_tables
-from support.rs274_snippets import program
+from support.rs274_snippets import FLAT, program
 
 from gcode.errors import GcodeError
 from gcode.settings import MachineSettings
@@ -80,9 +80,9 @@ def test_random_programs(seed: int, tmp_path: Path) -> None:
 
 
 @needs_rs274
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(30))
 def test_programs_with_a_mistake(seed: int, tmp_path: Path) -> None:
-    assert_same(mutated(program(seed, 8), seed), tmp_path)
+    assert_same(mutated(program(seed, 12, FLAT), seed), tmp_path)
 
 
 def test_motions_of_no_length_can_be_left_out() -> None:

@@ -8,6 +8,8 @@ Values are chosen first and written as expressions afterwards, so that programs 
 - a tool's offset in x and y together with a turned work offset: it is taken off in turned coordinates;
 - break out of a while loop, after which the next do loop of the program ends with its first pass, and continue in a do
   loop, after which the next repeat goes on too long;
+- G92 and G52 together with a turned work offset: it forgets to turn them when the turning changes;
+- a tool change after a change of offsets without a motion between: the stand-alone program's place is the old one;
 - G84 in G18 and G19, where it loses its place until the next tool change;
 - M98 in a subroutine: the search for the program stumbles over an ``endsub`` on its way;
 - more than ten levels of calls, which are refused; feeds of more than one decimal over M72, which rounds them;

@@ -86,6 +86,8 @@ def select(w: Writer) -> list[str]:
 
 
 def shift(w: Writer) -> list[str]:
+    if w.turning:
+        return ["G92.1"]
     words = w.axes(limit=15.0)
     return w.source.choice(
         (
@@ -125,7 +127,8 @@ def tool(w: Writer) -> list[str]:
     number = w.source.choice(on_axis(w))
     measured = ["G43", f"G1 {w.axes()}"] if w.odds(0.5) else []
     changed = w.source.choice(([f"T{number} M6"], [f"T{number}", "G0 X0", "M6"]))
-    return [*w.source.choice(([*changed, *measured], [f"M61 Q{number}"], ["T0 M6"])), "M3 S800"]
+    done = w.source.choice(([*changed, *measured], [f"M61 Q{number}"], ["T0 M6"]))
+    return [f"G0 X{w.mm()} Y{w.mm()} Z{w.mm()}", *done, "M3 S800"]
 
 
 def tool_data(w: Writer) -> list[str]:
@@ -324,3 +327,5 @@ SNIPPETS = {
 WEIGHTS = {"straight": 5, "arc": 4, "cycle": 2, "call": 2}
 #: Those with others in them, and what may not happen an unknown number of times.
 NESTING, ONCE = {"condition", "loop", "call", "recursion", "numbered_call", "kept"}, {"units", "numbered_call"}
+#: Names of those without others in them, of which a mistake cannot make a program without end.
+FLAT = ",".join(name for name in SNIPPETS if name not in NESTING)

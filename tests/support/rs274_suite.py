@@ -28,7 +28,7 @@ from support.rs274 import RS274, Move, moves_of, rows_of, run
 from support.rs274_blocks import record
 from support.rs274_compare import first_difference, lasting, our_moves, settings_of, timed
 from support.rs274_programs import mutated, write_tables
-from support.rs274_snippets import program
+from support.rs274_snippets import FLAT, program
 
 SAME, REFUSED, STILL, DIFFERS, STRICT, LAX, CRASH = (
     "same",
@@ -96,7 +96,7 @@ def random_cases(options: argparse.Namespace, folder: Path) -> Iterator[tuple[st
         made = folder / f"{seed}{'m' if options.mutate else ''}"
         made.mkdir(parents=True, exist_ok=True)
         write_tables(made)
-        text = program(seed, only=options.snippets)
+        text = program(seed, only=options.snippets or (FLAT if options.mutate else ""))
         (made / "t.ngc").write_text(mutated(text, seed) if options.mutate else text)
         yield made.name, made / "t.ngc"
 
