@@ -164,6 +164,8 @@ class Reader:
     unit: float = 1.0
     work: Point = ORIGIN
     shift: Point = ORIGIN
+    work_abc: Point = ORIGIN
+    shift_abc: Point = ORIGIN
     angle: float = 0.0
     plane: int = 17
     feed: float = 0.0
@@ -180,6 +182,11 @@ class Reader:
         dx, dy, dz = (value * self.unit + by for value, by in zip((x, y, z), self.shift, strict=True))
         cos, sin = math.cos(self.angle), math.sin(self.angle)
         return (dx * cos - dy * sin + self.work[0], dx * sin + dy * cos + self.work[1], dz + self.work[2])
+
+    def angles(self, of: Sequence[float]) -> Point:
+        """The axes A, B, C of a call in machine coordinates, degrees."""
+        a, b, c = (sum(parts) for parts in zip(of, self.work_abc, self.shift_abc, strict=True))
+        return (a, b, c)
 
     def read(self, name: str, inside: str) -> None:
         """Takes one canonical call; those without meaning for motion are passed over."""
@@ -203,8 +210,7 @@ class Reader:
             self.now = replace(self.now, end=move.end, abc=move.abc)
 
     def straight(self, kind: Kind, numbers: list[float]) -> Move:
-        a, b, c = numbers[3:6]
-        return replace(self.now, kind=kind, end=self.point(*numbers[:3]), abc=(a, b, c))
+        return replace(self.now, kind=kind, end=self.point(*numbers[:3]), abc=self.angles(numbers[3:6]))
 
     def arc(self, numbers: list[float]) -> Move:
         i, j, k = AXES[self.plane]
@@ -213,12 +219,11 @@ class Reader:
         centre[i], centre[j], centre[k] = numbers[2], numbers[3], numbers[5]
         middle = list(self.point(*centre))
         middle[k] = 0.0
-        a, b, c = numbers[6:9]
         return replace(
             self.now,
             kind="arc",
             end=self.point(*end),
-            abc=(a, b, c),
+            abc=self.angles(numbers[6:9]),
             plane=self.plane,
             centre=(middle[0], middle[1], middle[2]),
             turns=int(numbers[4]),
@@ -229,11 +234,11 @@ class Reader:
 
     def set_work(self, _: str, numbers: list[float]) -> None:
         x, y, z = (n * self.unit for n in numbers[1:4])
-        self.work = (x, y, z)
+        self.work, self.work_abc = (x, y, z), (numbers[4], numbers[5], numbers[6])
 
     def set_shift(self, _: str, numbers: list[float]) -> None:
         x, y, z = (n * self.unit for n in numbers[:3])
-        self.shift = (x, y, z)
+        self.shift, self.shift_abc = (x, y, z), (numbers[3], numbers[4], numbers[5])
 
     def set_angle(self, _: str, numbers: list[float]) -> None:
         self.angle = math.radians(numbers[0])
