@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from gcode.underline import harmless, underlined
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Call:
@@ -67,7 +69,6 @@ class GcodeError(Exception):
         return f"{self.place}: {self.problem}{tail} [{self.code}]"
 
     def underlined(self) -> str:
-        """The message with the block below it and a caret under the word, for a terminal."""
-        if not self.place.text:
-            return str(self)
-        return f"{self}\n    {self.place.text}\n    {' ' * (self.place.column - 1)}^"
+        """The message with the block below it, a caret under the word, and the calls that led there."""
+        calls = "".join(f"\n    in {call}" for call in reversed(self.place.calls))
+        return underlined(str(self), self.place.text, self.place.column) + harmless(calls)

@@ -90,6 +90,8 @@ class MachineSettings:
         offsets: work offsets by name (`ALL_OFFSETS`): the place of each work zero; by default all lie at the machine's
             zero. Only those given, and those that the program sets by G10, may be used.
         rotations_deg: rotation about z of each work offset, counter-clockwise; those missing are 0.
+        wcs: work offset that is active when the program starts.
+        shift_mm: shift by G92 that holds when the program starts.
         external_offset_mm: added to every work offset (the external or common offset).
         home_mm: gauge point at the reference point that G28 goes to.
         reference_points_mm: gauge points of the further reference points (G30 P2, P3, P4) by number.
@@ -116,6 +118,8 @@ class MachineSettings:
 
     offsets: Mapping[str, Point] = field(default_factory=lambda: dict.fromkeys(ALL_OFFSETS, _ORIGIN))
     rotations_deg: Mapping[str, float] = field(default_factory=dict)
+    wcs: str = "G54"
+    shift_mm: Point = _ORIGIN
     external_offset_mm: Point = _ORIGIN
     home_mm: Point = _ORIGIN
     reference_points_mm: Mapping[int, Point] = field(default_factory=dict)
@@ -142,7 +146,7 @@ class MachineSettings:
         if self.tools is not None:
             self._freeze("tools", {**self.tools})
         self._freeze("variables", {n: _length(f"variables[{n}]", v) for n, v in self.variables.items()})
-        for name in ("external_offset_mm", "home_mm", "start_mm"):
+        for name in ("shift_mm", "external_offset_mm", "home_mm", "start_mm"):
             object.__setattr__(self, name, _point(name, getattr(self, name)))
         object.__setattr__(self, "search_path", tuple(Path(folder) for folder in self.search_path))
         if self.tool < 0:

@@ -244,13 +244,14 @@ def initial_state(dialect: Dialect, settings: MachineSettings) -> State:
             {n: WorkOffset(zero_mm=p, rotation_deg=rotations.get(n, 0.0)) for n, p in settings.offsets.items()}
         ),
         external_mm=settings.external_offset_mm,
+        shift=WorkOffset(zero_mm=settings.shift_mm),
         tools=settings.tools or MappingProxyType({}),
         references=MappingProxyType(references),
     )
     state = State(
         control=Control(dialect=dialect, settings=settings),
         modes=modes,
-        machine=MotionState(tool=settings.tool, wcs="G54"),
+        machine=MotionState(tool=settings.tool, wcs=settings.wcs),
         setup=setup,
         frame=Frame(),
         position_mm=settings.start_mm,

@@ -65,11 +65,11 @@ def check(
 
 
 def _print_text(found: Findings, notices: bool) -> None:
-    from gcode.cli.underline import harmless, underlined
     from gcode.cli.words import plural
+    from gcode.underline import harmless
 
     for error in found.errors:
-        typer.echo(f"{underlined(error)}\n")
+        typer.echo(f"{error.underlined()}\n")
     if notices:
         for group in found.grouped():
             typer.echo(harmless(group))

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 import typer
 
 from gcode.cli.say import UnusableFileError
-from gcode.cli.underline import underlined
 from gcode.errors import GcodeError
 
 if TYPE_CHECKING:
@@ -126,4 +125,4 @@ def _read(read: Callable[[], _T]) -> _T:
     try:
         return read()
     except GcodeError as error:
-        raise UnusableFileError(underlined(error)) from None
+        raise UnusableFileError(error.underlined()) from None

@@ -29,7 +29,6 @@ def run(arguments: Sequence[str]) -> int:
     """
     from gcode.cli.app import app
     from gcode.cli.say import UnusableFileError, fail
-    from gcode.cli.underline import underlined
 
     try:
         app(args=list(arguments), prog_name="gcode")
@@ -39,7 +38,7 @@ def run(arguments: Sequence[str]) -> int:
         fail(str(error))
         return exit_codes.USAGE
     except GcodeError as error:
-        fail(underlined(error))
+        fail(error.underlined())
     except MemoryError:
         fail("not enough memory")
     return exit_codes.MISTAKES

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from gcode.cli import exit_codes
-from gcode.cli.underline import harmless
+from gcode.underline import harmless
 
 if TYPE_CHECKING:
     from rich.console import Console

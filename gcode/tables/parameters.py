@@ -65,14 +65,13 @@ class ParameterFile:
     g92_holds: bool
 
     def applied_to(self, settings: MachineSettings) -> MachineSettings:
-        """These settings with all that the file says in place of theirs; variables it does not name stay.
-
-        The active system and the G92 offset go along as variables 5220 and 5210 to 5219.
-        """
+        """These settings with all that the file says in place of theirs; variables it does not name stay."""
         return replace(
             settings,
             offsets=self.offsets,
             rotations_deg=self.rotations_deg,
+            wcs=self.wcs,
+            shift_mm=self.g92_mm if self.g92_holds else (0.0, 0.0, 0.0),
             home_mm=self.home_mm,
             reference_points_mm={**settings.reference_points_mm, **self.reference_points_mm},
             variables={**settings.variables, **self.variables},

@@ -94,6 +94,10 @@ def _by_offset(node: Node, read: Callable[[Node], Any]) -> dict[str, Any]:
     return named
 
 
+def _wcs(node: Node) -> str:
+    return _offset_name(node.text(), node)
+
+
 def _offsets(node: Node) -> dict[str, Point]:
     return _by_offset(node, Node.point)
 
@@ -140,6 +144,8 @@ _FIELDS: Mapping[str, Callable[[Node], Any]] = MappingProxyType(
     {
         "offsets": _offsets,
         "rotations_deg": _rotations,
+        "wcs": _wcs,
+        "shift_mm": Node.point,
         "external_offset_mm": Node.point,
         "home_mm": Node.point,
         "reference_points_mm": _reference_points,
@@ -153,6 +159,7 @@ _FIELDS: Mapping[str, Callable[[Node], Any]] = MappingProxyType(
         "block_delete": Node.flag,
         "optional_stop": Node.flag,
         "units": _choice("mm", "inch"),
+        "machine_units": _choice("mm", "inch"),
         "decimal_point": _choice("calculator", "increment"),
         "compensation_startup": _choice("A", "B"),
         "limits": _limits,

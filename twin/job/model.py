@@ -29,7 +29,7 @@ class Program(Table):
     """The NC program."""
 
     file: FilePath = Field(description="NC program, relative to the job file's folder")
-    dialect: Literal["fanuc", "linuxcnc"] = Field(
+    dialect: Literal["fanuc", "haas", "linuxcnc", "grbl"] = Field(
         default="fanuc", description="control that the program is written for"
     )
     arc_centres: Literal["incremental", "absolute"] = Field(
@@ -40,6 +40,15 @@ class Program(Table):
     )
     units: Literal["mm", "inch"] = Field(default="mm", description="units until the program says G20 or G21")
     tool: int = Field(default=0, ge=0, description="tool in the spindle when the program starts, 0 for none")
+    search_path: list[FilePath] = Field(
+        default_factory=list, description="folders of subprogram files, searched after the program's own"
+    )
+    decimal_point: Literal["calculator", "increment"] = Field(
+        default="calculator", description="X100 without a point: 100 mm, or 100 least increments of 0.001 mm"
+    )
+    compensation_startup: Literal["A", "B"] = Field(
+        default="A", description="type of start-up and cancel of cutter compensation on FANUC and Haas"
+    )
 
 
 class Machine(Table):

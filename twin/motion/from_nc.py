@@ -6,7 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
+from gcode.errors import GcodeError
 from gcode.events import (
+    NO_EXTRA,
     ArcMotion,
     Dwell,
     Event,
@@ -31,17 +33,23 @@ def moves_from_nc(
 
     The tool tip stands at the controlled point plus the active length offset less the tool's own length: with G43 and
     the right offset that is the controlled point itself, without it the tip is lower by the tool's length, as on the
-    machine.
+    machine. Motions of no length are left out.
 
     Args:
         origin_mm: origin of the workpiece frame in machine coordinates, shape (3,).
         start_mm: gauge point when the program starts, machine coordinates; where a dwell before any motion is.
         tool_length_mm: gauge length of each tool by number; tools that are missing count as 0.
         rapid_mm_min: speed of positioning along the path.
+
+    Raises:
+        GcodeError: for a motion with an axis besides X, Y and Z away from 0.
     """
     gauge = np.array(start_mm) - origin_mm
     for event in events:
         if isinstance(event, LinearMotion | ArcMotion):
+            _refuse_further_axes(event)
+            if isinstance(event, LinearMotion) and event.start_mm == event.end_mm:
+                continue
             move = _move(event, origin_mm, tool_length_mm, rapid_mm_min)
             gauge = move.end_mm + _up(tool_length_mm.get(move.tool, 0.0))
             yield move
@@ -61,6 +69,14 @@ def moves_from_nc(
             yield event
 
 
+def _refuse_further_axes(event: Motion) -> None:
+    """Refuses a motion with a rotary axis turned: the workpiece would not be where it is taken to be."""
+    if event.extra != NO_EXTRA:
+        turned = ", ".join(f"{axis}{value:g}" for axis, value in zip("ABCUVW", event.extra, strict=True) if value)
+        problem = f"an axis besides X, Y, Z is not at 0: {turned}"
+        raise GcodeError(event.place, "further-axis", problem, "a program for three axes")
+
+
 def _up(length_mm: float) -> FloatArray:
     return np.array([0.0, 0.0, length_mm])
 
@@ -71,7 +87,8 @@ def _signed_rpm(state: MotionState) -> float:
 
 def _move(event: Motion, origin: FloatArray, lengths: Mapping[int, float], rapid_mm_min: float) -> Move:
     state = event.state
-    lift = _up(state.length_offset_mm - lengths.get(state.tool, 0.0)) - origin
+    offset = np.array((*state.tool_offset_xy_mm, state.length_offset_mm))
+    lift = offset - _up(lengths.get(state.tool, 0.0)) - origin
 
     def tip(point: Point) -> FloatArray:
         return np.array(point) + lift

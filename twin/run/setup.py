@@ -158,7 +158,11 @@ def machine_settings(job: Job, slices: SliceSet) -> MachineSettings:
     tools = {t.number: ToolOffset(length_mm=t.length_mm, radius_mm=t.diameter_mm / 2.0) for t in job.tools}
     origin = np.array(machine.offsets[job.stock.wcs])
     middle = origin + 0.5 * (slices.low_mm + slices.high_mm)
-    top = float(origin[2] + slices.high_mm[2]) + max((tool.length_mm for tool in tools.values()), default=0.0) + HOME_CLEARANCE_MM
+    top = (
+        float(origin[2] + slices.high_mm[2])
+        + max((tool.length_mm for tool in tools.values()), default=0.0)
+        + HOME_CLEARANCE_MM
+    )
     home = machine.home_mm or (float(middle[0]), float(middle[1]), top)
     return MachineSettings(
         offsets={str(name): place for name, place in machine.offsets.items()},
@@ -169,4 +173,7 @@ def machine_settings(job: Job, slices: SliceSet) -> MachineSettings:
         arc_centres=job.program.arc_centres,
         block_delete=job.program.block_delete,
         units=job.program.units,
+        search_path=tuple(job.program.search_path),
+        decimal_point=job.program.decimal_point,
+        compensation_startup=job.program.compensation_startup,
     )

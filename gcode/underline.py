@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import unicodedata
 
-from gcode.errors import GcodeError
-
 _INDENT = "    "
 #: Of longer blocks only so many characters are shown before the word, and behind its beginning.
 _BEFORE, _BEHIND = 60, 60
@@ -22,16 +20,16 @@ def harmless(text: str) -> str:
     return text.translate(_HARMLESS)
 
 
-def underlined(error: GcodeError) -> str:
-    """The message of an error, its block, and a caret that stands under the word.
+def underlined(message: str, text: str, column: int) -> str:
+    """A message, the block it is about, and a caret that stands under the word at `column`, counted from 1.
 
     A tab before the word is a tab before the caret, and wide characters take two places. Of a long block only what is
     around the word is shown.
     """
-    message, text = harmless(str(error)), harmless(error.place.text)
+    message, text = harmless(message), harmless(text)
     if not text.strip():
         return message
-    index = min(error.place.column - 1, len(text))
+    index = min(column - 1, len(text))
     first, last = max(0, index - _BEFORE), index + _BEHIND
     head = ("…" if first else "") + text[first:index]
     tail = text[index:last] + ("…" if last < len(text) else "")
