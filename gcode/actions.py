@@ -113,6 +113,7 @@ def set_feed(state: State, command: Command) -> Result:
 
 def set_speed_mode(state: State, command: Command) -> Result:
     """G96 and G97. With G96, S is a surface speed and the spindle's speed follows from the distance to X0."""
+    _check_spindle_number(command)
     use = command.of_phase("speed_mode")[0]
     if use.rule.code == "G97":
         return state.with_modes(surface_speed=None), ()
@@ -124,6 +125,7 @@ def set_speed_mode(state: State, command: Command) -> Result:
 
 def set_speed(state: State, command: Command) -> Result:
     """S; the change is reported here unless a spindle code of the same block reports it."""
+    _check_spindle_number(command)
     value = not_negative(command.block, command.words["S"])
     if state.modes.surface_speed is not None:
         metre = 1.0 if state.modes.unit_mm == 1.0 else 0.3048
@@ -149,7 +151,15 @@ def set_spindle_off(state: State, command: Command) -> Result:
     return _set_spindle(state, command, "spindle_off")
 
 
+def _check_spindle_number(command: Command) -> None:
+    """Refuses words for another spindle than the first: 0, or -1 for all."""
+    word = command.words.get("$")
+    if word is not None and word.value not in (0.0, -1.0):
+        raise command.block.error(word, "unknown-spindle", f"{word.text} is another spindle", "$0, or $-1 for all")
+
+
 def _set_spindle(state: State, command: Command, phase: str) -> Result:
+    _check_spindle_number(command)
     direction = _SPINDLE[command.of_phase(phase)[0].rule.code]
     if direction != state.machine.spindle_direction:
         state = state.with_machine(spindle_direction=direction)

@@ -21,6 +21,8 @@ from gcode.state import State, same_place
 
 _SIDES: Mapping[str, compensation.Hand] = {"G41": "left", "G42": "right", "G41.1": "left", "G42.1": "right"}
 _OTHER: Mapping[compensation.Hand, compensation.Hand] = {"left": "right", "right": "left"}
+#: Orientations of tools whose edge lies all around their axis: those of mills (0), and 9 of round lathe tools.
+ROUND_ORIENTATIONS = frozenset({0, 9})
 _CORNERS: Mapping[str, CornerKind] = {",C": "chamfer", ",R": "round"}
 
 
@@ -107,7 +109,11 @@ def _radius(state: State, command: Command, code: str | None) -> float:
         number = state.machine.tool if dialect.compensation_defaults_to_tool else None
     if number is None:
         raise command.block.error(use, "missing-radius", f"{code} without D, and none before", "D and a number")
-    return _row(state, command, number, word or use).whole_radius_mm
+    row = _row(state, command, number, word or use)
+    if row.orientation not in ROUND_ORIENTATIONS:
+        problem = f"tool {number} is a lathe tool of orientation {row.orientation}"
+        raise command.block.error(word or use, "lathe-tool", problem, "cutter compensation with a tool that turns")
+    return row.whole_radius_mm
 
 
 def _row(state: State, command: Command, number: int, word: Word | None) -> ToolOffset:

@@ -7,12 +7,15 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from gcode.actions import Action, Result, whole_number
-from gcode.events import NO_EXTRA, Point
+from gcode.events import NO_EXTRA, Event, Notice, Point
 from gcode.frame import ORIGIN, Frame, difference, plus
 from gcode.modal import Command
 from gcode.offsets import additional_offset, axis_words, extra_value, extra_words, to_extra
 from gcode.settings import NUMBERED_OFFSETS, ToolOffset
 from gcode.state import EXTRA_AXES, State, WorkOffset
+
+#: Orientations of lathe tools are numbered from 1 to this.
+LAST_ORIENTATION = 9
 
 
 def set_data(state: State, command: Command) -> Result:
@@ -28,7 +31,19 @@ def set_data(state: State, command: Command) -> Result:
     if kind not in table:
         known = ", ".join(f"L{n}" for n in table)
         raise command.block.error(word, "unknown-data", f"{word.text} is no data that is set here", known)
-    return _DATA[table[kind]](state, command)
+    takes = _TAKES[table[kind]]
+    for letter in command.words.keys() & set(use.rule.letters) - set("LP" + takes):
+        problem = f"{command.words[letter].text} has no meaning in {use.word.text} {word.text}"
+        raise command.block.error(command.words[letter], "unused-word", problem, f"only {', '.join('P' + takes)}")
+    state, events = _DATA[table[kind]](state, command)
+    return state, events + _lathe_words(command)
+
+
+def _lathe_words(command: Command) -> tuple[Event, ...]:
+    """Says that the angles of a lathe tool change no motion."""
+    words = [command.words[letter] for letter in "IJ" if letter in command.words]
+    text = f"{' '.join(word.text for word in words)}: the angles of a lathe tool change no motion"
+    return (Notice(place=command.block.place_of(words[0]), code="no-motion", text=text),) if words else ()
 
 
 def _set_zero(state: State, command: Command) -> Result:
@@ -155,9 +170,9 @@ def _row_from_position(state: State, command: Command, frame: Frame) -> Result:
 def _set_tool_row(state: State, command: Command) -> Result:
     """LinuxCNC's G10 L1: a row of the tool table from axis words and R, a radius."""
     number, row = _known_row(state, command)
-    if command.words.keys().isdisjoint("XYZR"):
+    if command.words.keys().isdisjoint("XYZRIJQ"):
         use = command.of_phase("data")[0].word
-        raise command.block.error(use, "missing-word", f"{use.text} sets nothing", "axis words or R")
+        raise command.block.error(use, "missing-word", f"{use.text} sets nothing", "axis words, R, I, J or Q")
     place = axis_words(state, command, (row.x_mm, row.y_mm, row.length_mm))
     return _with_tool(state, number, _with_place(state, command, row, place)), ()
 
@@ -171,10 +186,15 @@ def _known_row(state: State, command: Command) -> tuple[int, ToolOffset]:
 
 
 def _with_place(state: State, command: Command, row: ToolOffset, place: Point) -> ToolOffset:
-    """The row with these offsets, and the radius of an R word."""
+    """The row with these offsets, the radius of an R word and the orientation of a Q word."""
     word = command.words.get("R")
     radius = row.radius_mm if word is None else word.value * state.modes.unit_mm
-    return replace(row, x_mm=place[0], y_mm=place[1], length_mm=place[2], radius_mm=radius)
+    turned = command.words.get("Q")
+    orientation = row.orientation if turned is None else whole_number(command.block, turned)
+    if turned is not None and orientation > LAST_ORIENTATION:
+        problem = f"{turned.text} is no orientation of a lathe tool"
+        raise command.block.error(turned, "bad-value", problem, f"Q0 to Q{LAST_ORIENTATION}")
+    return replace(row, x_mm=place[0], y_mm=place[1], length_mm=place[2], radius_mm=radius, orientation=orientation)
 
 
 def _with_tool(state: State, number: int, row: ToolOffset) -> State:
@@ -193,5 +213,17 @@ _DATA: Mapping[str, Action] = {
     "tool-at-fixture": _set_tool_row_at_fixture,
 }
 
+#: Letters that each kind of data takes beside L and P.
+_TAKES: Mapping[str, str] = {
+    "zero": "XYZABCR",
+    "zero-here": "XYZABCR",
+    "length": "R",
+    "length-wear": "R",
+    "radius": "R",
+    "radius-wear": "R",
+    "tool": "XYZRIJQ",
+    "tool-here": "XYZR",
+    "tool-at-fixture": "XYZR",
+}
 
 DATA_ACTIONS: Mapping[str, Action] = {"data": set_data}

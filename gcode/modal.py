@@ -18,6 +18,10 @@ _PHASE_OF_LETTER: Mapping[str, str] = {"F": "feed", "S": "speed", "T": "tool"}
 _PHASE_OF_FREE_LETTER: Mapping[str, str] = {"H": "length", "D": "radius"}
 #: Groups whose codes take the axis words of the blocks that follow.
 _MOTION_GROUPS = frozenset({"motion", "motion-cancel", "cycle"})
+#: Letters that are free to stand beside another one: which spindle an S is for.
+_COMPANIONS: Mapping[str, str] = {"S": "$"}
+#: Motion codes that hold for their own block only.
+_NOT_MODAL = frozenset({"G5", "G5.1"})
 #: Codes after whose motions a corner may be cut or rounded.
 _CORNERED = frozenset({"G1", "G2", "G3"})
 
@@ -117,8 +121,8 @@ def _claim_words(state: State, block: ParsedBlock, uses: list[Use], words: Mappi
         True where the words left to the active motion code make a motion.
     """
     dialect = state.control.dialect
-    claimed = dialect.free_letters
-    motion = dialect.codes[state.modes.motion]
+    claimed = dialect.free_letters + "".join(_COMPANIONS.get(letter, "") for letter in words)
+    motion = dialect.codes["G80" if state.modes.motion in _NOT_MODAL else state.modes.motion]
     owner: Use | None = None
     explicit: Use | None = None
     for use in uses:

@@ -11,6 +11,7 @@ from gcode.arcs import arc
 from gcode.events import LinearMotion, Point
 from gcode.holes import drill
 from gcode.modal import Command
+from gcode.polar_words import POLAR_LETTERS, as_axis_words
 from gcode.reference import return_to_reference
 from gcode.splines import cubic_spline, quadratic_spline
 from gcode.state import AXES, State
@@ -22,6 +23,8 @@ def move(state: State, command: Command) -> Result:
     """The motion that a block's axis words make with the active motion code."""
     if state.modes.surface_speed is not None:
         state = _at_surface_speed(state)
+    if not command.words.keys().isdisjoint(POLAR_LETTERS):
+        command = as_axis_words(state, command)
     if command.code("G53"):
         return _machine_move(state, command)
     return _MOTIONS.get(state.modes.motion, drill)(state, command)
@@ -107,6 +110,10 @@ def _rigid_tap(state: State, command: Command) -> Result:
 
 
 def _pitch_feed(state: State, command: Command) -> float:
+    feed = command.words.get("F")
+    if feed is not None:
+        problem = f"{feed.text} beside {state.modes.motion}, whose feed is its pitch at the spindle's speed"
+        raise command.block.error(feed, "unused-word", problem, "F in another block")
     word = command.words.get("K")
     if word is None or word.value == 0.0:
         problem = f"{state.modes.motion} without a pitch"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from gcode.actions import Action, Result, not_negative, whole_number
@@ -226,7 +226,7 @@ def extra_words(state: State, command: Command, otherwise: Extra) -> Extra:
     )
 
 
-def to_extra(values: list[float]) -> Extra:
+def to_extra(values: Sequence[float]) -> Extra:
     """Six values as positions of the further axes."""
     a, b, c, u, v, w = values
     return (a, b, c, u, v, w)

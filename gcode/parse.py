@@ -23,6 +23,8 @@ _CONTROL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f]")
 _NUMBER = re.compile(r"[+-]*[0-9.]*")
 _GOOD_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)", re.ASCII)
 _KEYWORD = re.compile(r"IF|THEN|ELSE|WHILE|DO|END|GOTO|SUB|CALL|REPEAT|RETURN|BREAK|CONTINUE|POPEN|PCLOS|DPRNT|SETVN")
+#: Signs that LinuxCNC uses as letters: of polar words, and of a spindle's number.
+_SIGN_LETTERS = frozenset("@^$")
 _CONTROL_NAMES = {"\x00": "NUL", "\r": "carriage return", "\x1a": "substitute (Ctrl-Z)"}
 
 
@@ -214,7 +216,7 @@ def _word(place: Place, source: Source, position: int) -> tuple[Word, int]:
         letter = "O"
     else:
         letter = source.text[position : position + 1]
-        if not ("A" <= letter <= "Z" and letter.isascii()):
+        if not (letter.isascii() and letter.isalpha()) and not (letter in _SIGN_LETTERS and source.language.named):
             raise _unexpected(place, source, start)
     letter = source.text[start:position] + letter
     position += 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from gcode.actions import Action, Result, whole_number
@@ -45,18 +45,29 @@ def _return(state: State, command: Command) -> Result:
     via, to_via = straight(state, command, first, rapid=True, extra=extra_end(state, command))
     via = via.with_modes(via_mm=first)
     point, far = _reference_point(state, command)
-    x, y, z = (
-        there if axis in named or not named else here
-        for axis, there, here in zip(AXES, point, via.gauge_mm, strict=True)
-    )
-    extra = to_extra(
-        [
-            there if axis in named or not named else here
-            for axis, there, here in zip(EXTRA_AXES, far, via.extra, strict=True)
-        ]
-    )
-    there, to_home = straight(via, command, via.tip_of((x, y, z)), rapid=True, extra=extra)
+    extra = to_extra(_only(EXTRA_AXES, named, far, via.extra))
+    there, to_home = straight(via, command, _home(via, point, named), rapid=True, extra=extra)
     return settled(there, command), to_via + to_home
+
+
+def _home(state: State, point: Point, named: frozenset[str]) -> Point:
+    """Controlled point at the reference point `point` in the named axes, and as it is in the others.
+
+    The axes are those of the machine, or in LinuxCNC those of the program, which G10 L2 R may have turned.
+    """
+    if not state.control.dialect.shift_is_rotated:
+        x, y, z = _only(AXES, named, point, state.gauge_mm)
+        return state.tip_of((x, y, z))
+    there = state.frame.to_program(state.tip_of(point))
+    x, y, z = _only(AXES, named, there, state.program_mm)
+    return state.frame.to_machine((x, y, z))
+
+
+def _only(
+    axes: Sequence[str], named: frozenset[str], there: Sequence[float], here: Sequence[float]
+) -> tuple[float, ...]:
+    """The numbers of `there` for the named axes, of all where none is named, and those of `here` for the others."""
+    return tuple(far if axis in named or not named else near for axis, far, near in zip(axes, there, here, strict=True))
 
 
 def _reference_point(state: State, command: Command) -> tuple[Point, Extra]:

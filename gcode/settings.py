@@ -32,6 +32,7 @@ class ToolOffset:
         x_mm: offset in x, which only some controls have.
         y_mm: offset in y.
         pocket: pocket of the magazine, None where it has none.
+        orientation: orientation (1 to 9) of a lathe tool, 0 for a tool that turns; 9 has its edge all around, as 0.
         comment: description.
 
     Raises:
@@ -45,6 +46,7 @@ class ToolOffset:
     x_mm: float = 0.0
     y_mm: float = 0.0
     pocket: int | None = None
+    orientation: int = 0
     comment: str = ""
 
     def __post_init__(self) -> None:

@@ -11,6 +11,8 @@ from gcode.cycles.strokes import Tool
 from gcode.cycles.words import check_needed, has_axis, read_words
 
 _SPINDLE = {-1: "counter-clockwise (M4)", 0: "not at all (M5)", 1: "clockwise (M3)"}
+#: Levels closer than this, in the program's unit, are one level: no motion is made for what rounding leaves.
+SAME_LEVEL = 1e-9
 _FEEDS = frozenset({Act.FEED_BOTTOM, Act.PECK, Act.CHIP_BREAK, Act.TAP_BOTTOM})
 
 
@@ -105,14 +107,14 @@ def _lifting(tool: Tool, call: CycleInput, repeats: int) -> Position:
     """Up to R first where the initial level is below it, then as the control takes the tool to stand."""
     r, clear = tool.hole.r, tool.hole.clear
     level = call.position[2]
-    if call.initial_level < r:
+    if call.initial_level < r - SAME_LEVEL:
         level = r
         tool.go((call.position[0], call.position[1], r), rapid=True)
     for number in range(1, repeats + 1):
         tool.centre = _centre(call, number)
-        above = level if number == 1 and level > r else clear
+        above = level if number == 1 and level > r + SAME_LEVEL else clear
         tool.go((*tool.centre, above), rapid=True)
-        if above > r:
+        if above > r + SAME_LEVEL:
             tool.along(r, rapid=True)
         tool.work()
     return (*tool.centre, clear)

@@ -22,23 +22,27 @@ class ArcTolerance:
 
     Attributes:
         absolute_mm: a difference up to this is always accepted.
-        relative: a larger one is accepted up to this part of the radius...
-        largest: ...and up to this length, in the program's unit.
+        absolute_inch_mm: the same in inch programs (G20), in mm; None for `absolute_mm`.
+        relative: a larger one is accepted up to this part of the larger radius...
+        most: ...and up to this many times what is always accepted.
     """
 
     absolute_mm: float
+    absolute_inch_mm: float | None = None
     relative: float = 0.0
-    largest: float = 0.0
+    most: float = 1.0
 
     def in_unit(self, unit_mm: float) -> ArcTolerance:
-        """The tolerance for a program in a unit of `unit_mm`, with `largest` in mm."""
-        return self if not self.largest or unit_mm == 1.0 else replace(self, largest=self.largest * unit_mm)
+        """The tolerance for a program in a unit of `unit_mm`."""
+        if self.absolute_inch_mm is None or unit_mm == 1.0:
+            return self
+        return replace(self, absolute_mm=self.absolute_inch_mm)
 
     def accepts(self, start_radius_mm: float, end_radius_mm: float) -> bool:
         """True where an arc from one radius to the other is run."""
         difference = abs(start_radius_mm - end_radius_mm)
         relative = self.relative * max(start_radius_mm, end_radius_mm)
-        return difference <= self.absolute_mm or difference <= min(relative, self.largest)
+        return difference <= max(self.absolute_mm, min(relative, self.most * self.absolute_mm))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,8 +78,7 @@ class Dialect:
         cycles: its canned cycles, None for none.
         compensation: how cutter compensation finds the tool's path.
         not_compensated: phases whose codes are refused while cutter compensation is on.
-        not_compensated: frozenset[str]
-    compensation_defaults_to_tool: G41/G42 without D take the radius of the tool in the spindle.
+        compensation_defaults_to_tool: G41/G42 without D take the radius of the tool in the spindle.
         data_kinds: what G10 writes for each L.
         additional_by_l20: G10 L20 writes additional work offsets; else the offset under which the tool is where the
             words say.

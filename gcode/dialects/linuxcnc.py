@@ -8,13 +8,15 @@ from gcode.dialects.base import ArcTolerance, Dialect, DwellWord
 from gcode.expressions import LINUXCNC_MACRO
 
 _ALL = "XYZABC"
+#: Axis words of a motion, and the polar ones.
+_TARGET = _ALL + "@^"
 _DRILLING = {code: cycle.meaning for code, cycle in LINUXCNC_CYCLES.cycles.items()}
 
 CODES: Table = {
     **FULL,
-    **executed("motion", "modes", {"G0": "rapid positioning", "G1": "straight feed"}, _ALL),
-    **executed("motion", "modes", {"G2": "clockwise arc", "G3": "counter-clockwise arc"}, _ALL + "IJKRP"),
-    **executed("motion", "modes", _DRILLING, "XYZRQPLIJK"),
+    **executed("motion", "modes", {"G0": "rapid positioning", "G1": "straight feed"}, _TARGET),
+    **executed("motion", "modes", {"G2": "clockwise arc", "G3": "counter-clockwise arc"}, _TARGET + "IJKRP"),
+    **executed("motion", "modes", _DRILLING, "XYZ@^RQPLIJK"),
     **executed("motion", "modes", {"G5": "cubic spline"}, "XYIJPQ"),
     **executed("motion", "modes", {"G5.1": "quadratic spline"}, "XYIJ"),
     **executed("motion", "modes", {"G33": "spindle-synchronised motion"}, "XYZK"),
@@ -22,7 +24,7 @@ CODES: Table = {
     **executed("motion-cancel", "modes", {"G80": "motion cancel"}),
     **executed("one-shot", "dwell", {"G4": "dwell"}, "P"),
     **executed("diameter", "modes", {"G7": "diameter mode", "G8": "radius mode"}),
-    **owning("one-shot", "data", {"G10": "offset data setting"}, "LPR" + _ALL),
+    **owning("one-shot", "data", {"G10": "offset data setting"}, "LPRIJQ" + _ALL),
     **owning("one-shot", "reference", {"G28": "return to the reference point"}, _ALL),
     **owning("one-shot", "reference", {"G30": "return to the second reference point"}, _ALL),
     **executed("one-shot", "reference", {"G28.1": "store the reference point"}),
@@ -35,9 +37,13 @@ CODES: Table = {
     **owning("length", "length", {"G43.1": "dynamic tool length offset"}, "XYZ"),
     **executed("length", "length", {"G43.2": "additional tool length offset"}, "H"),
     **executed("work-offset", "work_offset", {f"G59.{n}": f"work offset {n + 6}" for n in (1, 2, 3)}),
+    **executed("spindle", "spindle_on", {"M3": "spindle clockwise", "M4": "spindle counter-clockwise"}, "$"),
+    **executed("spindle", "spindle_off", {"M5": "spindle stop"}, "$"),
+    **executed("speed-mode", "speed_mode", {"G96": "constant surface speed"}, "D$"),
+    **executed("speed-mode", "speed_mode", {"G97": "constant spindle speed"}, "$"),
     **executed("coolant", "coolant_on", {"M7": "mist coolant", "M8": "flood coolant"}),
     **executed("coolant", "coolant_off", {"M9": "coolant off"}),
-    **executed("spindle", "spindle_off", {"M19": "spindle orientation"}, "RPQ"),
+    **executed("spindle", "spindle_off", {"M19": "spindle orientation"}, "RPQ$"),
     **executed("stop", "stop", {"M60": "pallet change stop"}),
     **executed("tool-change", "tool_change", {"M61": "set the current tool"}, "Q"),
     **executed(
@@ -96,6 +102,8 @@ LINUXCNC = Dialect(
     shift_is_rotated=True,
     semicolon_ends_block=False,
     leader=False,
-    arc_tolerance=ArcTolerance(absolute_mm=0.0127, relative=0.001, largest=1.27),
+    arc_tolerance=ArcTolerance(
+        absolute_mm=0.0282842712474619, absolute_inch_mm=0.00282842712474619 * 25.4, relative=0.001, most=100.0
+    ),
     radius_tolerance_mm=0.00127,
 )

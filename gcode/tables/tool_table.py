@@ -1,8 +1,8 @@
 """Tool tables: LinuxCNC's ``.tbl``, and ``.toml``.
 
 A ``.tbl`` row is words in any order and a comment behind a semicolon: ``T1 P1 Z0.511 D0.125 ;1/8 end mill``. T is the
-tool's number, P its pocket, X Y Z its offsets, D its diameter, I J Q a lathe tool's angles and orientation, which
-motions do not depend on.
+tool's number, P its pocket, X Y Z its offsets, D its diameter, Q the orientation of a lathe tool and I J its angles,
+which motions do not depend on.
 """
 
 from __future__ import annotations
@@ -22,10 +22,12 @@ from gcode.tables.text_file import MM_PER_UNIT, Unit, error_at, lines_of, number
 _FIELDS: Mapping[str, tuple[str, float]] = MappingProxyType(
     {"X": ("x_mm", 1.0), "Y": ("y_mm", 1.0), "Z": ("length_mm", 1.0), "D": ("radius_mm", 0.5)}
 )
-_WHOLE = "TP"
-_LATHE = "IJQ"
+_WHOLE = "TPQ"
+_LATHE = "IJ"
 #: Offsets along axes that a row of `ToolOffset` does not have; they must be 0.
 _FURTHER = "ABCUVW"
+#: Words that motions do not depend on: the last one of a row holds, as in LinuxCNC.
+_REPEATABLE = "PIJ"
 _LETTERS = "".join((_WHOLE, *_FIELDS, _LATHE, _FURTHER))
 _ROW = "a row such as T1 P1 Z0.5 D0.25 ;comment"
 
@@ -82,7 +84,7 @@ def _words(place: Place) -> dict[str, tuple[float, int]]:
         if letter not in _LETTERS:
             problem = f"{token_at(text, index)!r} is no word of a tool table"
             raise error_at(place, index, "tool-table-word", problem, _ROW)
-        if letter in words:
+        if letter in words and letter not in _REPEATABLE:
             raise error_at(place, index, "tool-table-duplicate", f"{letter} twice in one row", "each word once")
         value, end = number_at(place, index + 1, letter, "tool-table-word")
         words[letter] = (value, index)
@@ -116,4 +118,6 @@ def _row(place: Place, words: Mapping[str, tuple[float, int]], unit_mm: float) -
             raise error_at(place, index, "tool-table-axis", problem, "offsets along X, Y and Z only")
     lengths = {name: words[letter][0] * part * unit_mm for letter, (name, part) in _FIELDS.items() if letter in words}
     pocket = int(words["P"][0]) if "P" in words else None
-    return ToolOffset(pocket=pocket, comment=place.text.partition(";")[2].strip(), **lengths)
+    orientation = int(words["Q"][0]) if "Q" in words else 0
+    comment = place.text.partition(";")[2].strip()
+    return ToolOffset(pocket=pocket, orientation=orientation, comment=comment, **lengths)

@@ -104,4 +104,7 @@ def _joined(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         name = joined.get(table, {}).get(key)
         if name is not None:
             joined[table] = {**joined[table], key: folder / name}
+    program = joined.get("program", {})
+    if "search_path" in program:
+        joined["program"] = {**program, "search_path": [folder / name for name in program["search_path"]]}
     return joined
