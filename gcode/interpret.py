@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from gcode.bulk import PlainBatch, expand
-from gcode.dialects import FANUC, Dialect
+from gcode.dialects import DIALECTS, FANUC, Dialect
 from gcode.errors import GcodeError, Place
 from gcode.events import Event
 from gcode.foreign import recognise
@@ -117,10 +117,11 @@ def _refuse_foreign(program: Program) -> None:
     """
     foreign = recognise(program.head)
     if foreign is not None:
-        text = program.head.splitlines()[foreign.line - 1] if program.head else ""
+        text = program.head.split("\n")[foreign.line - 1]
         place = Place(file=program.file, line=foreign.line, column=foreign.column, text=text)
-        problem = f"{foreign.marker}: {foreign.reason}"
-        raise GcodeError(place, "foreign-control", problem, "a program of this dialect")
+        problem = f"a program for {foreign.control}: {foreign.marker!r} is {foreign.reason}"
+        *most, last = DIALECTS
+        raise GcodeError(place, "foreign-control", problem, f"a program for {', '.join(most)} or {last}")
 
 
 def _raise(error: GcodeError) -> None:
