@@ -294,7 +294,8 @@ def _check_characters(place: Place) -> None:
 
 def _unexpected(place: Place, source: Source, position: int) -> GcodeError:
     """The error for a character that begins no word and no comment."""
-    character, column = source.text[position], source.column(position)
+    column = source.column(position)
+    character = place.text[column - 1]
     if character in "#[=<":
         return _macro(place, column, character, source.language)
     problem = f"unexpected {character!r}"

@@ -219,7 +219,7 @@ def _decoded(line: bytes) -> str:
         text = line.decode("utf-8")
     except UnicodeDecodeError:
         text = line.decode("latin-1")
-    return text.removesuffix("\r")
+    return text.rstrip("\r")
 
 
 def program_of(source: str | bytes | Iterable[str], file: str) -> Program:

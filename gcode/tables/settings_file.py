@@ -133,6 +133,7 @@ _TOOL_FIELDS: Mapping[str, Callable[[Node], Any]] = MappingProxyType(
     {
         **{f.name: Node.number for f in fields(ToolOffset) if f.name.endswith("_mm")},
         "pocket": Node.whole,
+        "orientation": Node.whole,
         "comment": Node.text,
     }
 )

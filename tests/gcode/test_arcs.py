@@ -7,6 +7,7 @@ import math
 import pytest
 
 from gcode.events import ArcMotion
+from gcode.settings import ToolOffset
 
 #: For each plane: axes (first, second, normal) and the letters of the centre.
 PLANES = {17: ("X", "Y", "Z", "I", "J"), 18: ("Z", "X", "Y", "K", "I"), 19: ("Y", "Z", "X", "J", "K")}
@@ -72,7 +73,7 @@ def test_r_of_half_the_chord_is_half_a_turn(motions) -> None:
 
 
 def test_offsets_units_and_lengths_reach_the_centre(motions) -> None:
-    settings = {"offsets": {"G54": (100.0, 200.0, 300.0)}, "length_offsets_mm": {1: 50.0}}
+    settings = {"offsets": {"G54": (100.0, 200.0, 300.0)}, "tools": {1: ToolOffset(length_mm=50.0)}}
     arc = motions("G20 G43 H1 G0 X1. Y0 Z0\nG3 X0 Y1. I-1. F10.", **settings)[-1]
     assert arc.centre_mm == (100, 200, 300)
     assert arc.start_mm == pytest.approx((125.4, 200, 300))

@@ -6,9 +6,10 @@ from itertools import pairwise
 
 import pytest
 
-from gcode.events import LinearMotion
+from gcode.events import LinearMotion, Notice
+from gcode.settings import ToolOffset
 
-LENGTHS = {1: 100.0, 2: 60.0}
+LENGTHS = {1: ToolOffset(length_mm=100.0), 2: ToolOffset(length_mm=60.0)}
 
 
 def ends(motions: list) -> list[tuple[float, float, float]]:
@@ -17,7 +18,7 @@ def ends(motions: list) -> list[tuple[float, float, float]]:
 
 def test_a_motion_says_all_that_holds_while_it_is_made(motions) -> None:
     text = "T7 M6 S1200 M4\nG55 G43 H2\nG19 G1 X1. Y2. Z3. F250."
-    (motion,) = motions(text, offsets={"G55": (10, 20, 30)}, length_offsets_mm=LENGTHS, start_mm=(0, 0, 500))
+    (motion,) = motions(text, offsets={"G55": (10, 20, 30)}, tools=LENGTHS, start_mm=(0, 0, 500))
     assert isinstance(motion, LinearMotion)
     assert (motion.start_mm, motion.end_mm) == ((0, 0, 440), (11, 22, 33))
     assert (motion.rapid, motion.feed_mm_min, motion.place.line) == (False, 250, 3)
@@ -54,9 +55,10 @@ def test_linuxcnc_reads_f_before_the_units_of_its_block(motions) -> None:
     assert motions("G20\nF60\nG1 X1", "linuxcnc")[0].feed_mm_min == 1524
 
 
-def test_a_motion_to_where_the_tool_is_is_none(motions) -> None:
-    assert motions("X0 Y0\nG1 Z0 F1\nG91 X0") == []
-    assert len(motions("X0.001")) == 1
+def test_a_motion_to_where_the_tool_is_is_told_with_no_length(motions) -> None:
+    told = motions("X0 Y0\nG1 Z0 F1\nG91 X0")
+    assert [m.place.line for m in told] == [1, 2, 3]
+    assert all(m.start_mm == m.end_mm == (0, 0, 0) for m in told)
 
 
 def test_work_offsets(motions, refusal) -> None:
@@ -66,7 +68,7 @@ def test_work_offsets(motions, refusal) -> None:
         "t.nc:2:1: work offset G57 is not given; expected one of the machine's offsets: G54, G59 [unknown-work-offset]"
     )
     assert str(refusal("G0 X1", offsets={"G55": (0, 0, 0)})) == (
-        "t.nc:1:4: work offset G54 is not given; expected one of the machine's offsets: G55 [unknown-work-offset]"
+        "t.nc:1:1: work offset G54 is not given; expected one of the machine's offsets: G55 [unknown-work-offset]"
     )
 
 
@@ -87,23 +89,23 @@ def test_g28_goes_by_way_of_the_programmed_point(motions) -> None:
     settings = {"home_mm": (300.0, 200.0, 400.0), "offsets": {"G54": (10.0, 10.0, 10.0)}, "start_mm": (1.0, 1.0, 1.0)}
     assert ends(motions("G90 G28 X5 Z20", **settings)) == [(15, 1, 30), (300, 1, 400)]
     assert ends(motions("G91 G28 X5 Z20", **settings)) == [(6, 1, 21), (300, 1, 400)]
-    assert ends(motions("G91 G28 Z0", **settings)) == [(1, 1, 400)]
-    assert ends(motions("G28 G91 X0 Y0\nG90 X0", **settings)) == [(300, 200, 1), (10, 200, 1)]
+    assert ends(motions("G91 G28 Z0", **settings)) == [(1, 1, 1), (1, 1, 400)]
+    assert ends(motions("G28 G91 X0 Y0\nG90 X0", **settings)) == [(1, 1, 1), (300, 200, 1), (10, 200, 1)]
     assert all(m.rapid and m.feed_mm_min == 0 for m in motions("G1 F5. G28 X5", **settings))
 
 
 def test_g28_takes_the_gauge_point_to_the_reference_point(motions) -> None:
-    moved = motions("G43 H1 Z0\nG91 G28 Z0", home_mm=(0, 0, 500), start_mm=(0, 0, 500), length_offsets_mm=LENGTHS)
-    assert ends(moved) == [(0, 0, 0), (0, 0, 400)]
+    moved = motions("G43 H1 Z0\nG91 G28 Z0", home_mm=(0, 0, 500), start_mm=(0, 0, 500), tools=LENGTHS)
+    assert ends(moved) == [(0, 0, 0), (0, 0, 0), (0, 0, 400)]
 
 
 def test_g28_without_axes(motions, refusal) -> None:
     assert str(refusal("G28")) == "t.nc:1:1: G28 names no axis; expected at least one of X, Y, Z [missing-axis]"
-    assert ends(motions("G28", "linuxcnc", home_mm=(1, 2, 3))) == [(1, 2, 3)]
+    assert ends(motions("G28", "linuxcnc", home_mm=(1, 2, 3))) == [(0, 0, 0), (1, 2, 3)]
 
 
 def test_g53_takes_the_gauge_point_to_machine_coordinates_once(motions) -> None:
-    settings = {"offsets": {"G54": (10.0, 20.0, 30.0)}, "length_offsets_mm": LENGTHS}
+    settings = {"offsets": {"G54": (10.0, 20.0, 30.0)}, "tools": LENGTHS}
     moved = motions("G43 H1 X0 Y0 Z0\nG53 Z250.\nZ0\nG20 G53 Z1.", **settings)
     assert ends(moved) == [(10, 20, 30), (10, 20, 150), (10, 20, 30), (10, 20, 25.4 - 100)]
 
@@ -125,7 +127,7 @@ def test_g53_needs_absolute_words(dialect: str, refusal) -> None:
 
 
 def test_length_offsets_shift_the_controlled_point_and_move_nothing(motions) -> None:
-    settings = {"length_offsets_mm": LENGTHS, "start_mm": (0.0, 0.0, 300.0)}
+    settings = {"tools": LENGTHS, "start_mm": (0.0, 0.0, 300.0)}
     moved = motions("G43 H1\nX1\nZ0\nG49\nX2\nG44 H2\nX3\nZ0", **settings)
     assert [(m.start_mm, m.end_mm) for m in moved] == [
         ((0, 0, 200), (1, 0, 200)),
@@ -138,14 +140,14 @@ def test_length_offsets_shift_the_controlled_point_and_move_nothing(motions) -> 
 
 
 def test_the_gauge_point_never_jumps(motions) -> None:
-    moved = motions("G43 H1 Z50\nG43 H2 X1\nG49 X2\nZ3\nG44 H1 Y1", length_offsets_mm=LENGTHS, start_mm=(0, 0, 400))
+    moved = motions("G43 H1 Z50\nG43 H2 X1\nG49 X2\nZ3\nG44 H1 Y1", tools=LENGTHS, start_mm=(0, 0, 400))
     gauge = [[(m.start_mm, m.end_mm)[i][2] + m.state.length_offset_mm for i in (0, 1)] for m in moved]
     assert all(before[1] == after[0] for before, after in pairwise(gauge))
     assert gauge[0][0] == 400
 
 
 def test_h_is_modal_in_fanuc(motions, refusal) -> None:
-    assert [m.state.length_offset_mm for m in motions("H2\nG43 X1\nH1 X2\nH0 X3", length_offsets_mm=LENGTHS)] == [
+    assert [m.state.length_offset_mm for m in motions("H2\nG43 X1\nH1 X2\nH0 X3", tools=LENGTHS)] == [
         60,
         100,
         0,
@@ -159,7 +161,7 @@ def test_h_is_modal_in_fanuc(motions, refusal) -> None:
 def test_g43_alone_takes_the_offset_of_the_tool_in_linuxcnc(motions, refusal) -> None:
     program = "T2 M6\nG43{} G0 X1"
     for word, length in (("", 60), (" H0", 60), (" H1", 100)):
-        (motion,) = motions(program.format(word), "linuxcnc", length_offsets_mm=LENGTHS)
+        (motion,) = motions(program.format(word), "linuxcnc", tools=LENGTHS)
         assert motion.state.length_offset_mm == length
     assert refusal("G0 X1 H1", "linuxcnc").code == "unused-word"
     assert refusal("G44 H1", "linuxcnc").code == "unknown-code"
@@ -167,12 +169,19 @@ def test_g43_alone_takes_the_offset_of_the_tool_in_linuxcnc(motions, refusal) ->
 
 def test_an_offset_that_is_not_in_the_table(refusal) -> None:
     message = "t.nc:1:5: tool length offset 9 is not in the table; expected one of the table: H1, H2 "
-    assert str(refusal("G43 H9", length_offsets_mm=LENGTHS)) == message + "[unknown-length-offset]"
-    assert str(refusal("G43 H9")).endswith("expected one of the table: none is given [unknown-length-offset]")
+    assert str(refusal("G43 H9", tools=LENGTHS)) == message + "[unknown-length-offset]"
+    assert str(refusal("G43 H9", tools={})).endswith("expected one of the table: none is given [unknown-length-offset]")
+
+
+def test_without_a_table_lengths_count_as_0_and_a_notice_says_so(run, motions) -> None:
+    (notice,) = [e for e in run("G43 H9\nM30") if isinstance(e, Notice)]
+    assert (notice.place.column, notice.code) == (5, "no-tool-table")
+    assert notice.text == "H9: no tool table is given, so the length of offset 9 counts as 0"
+    assert motions("G43 H9 Z5")[0].state.length_offset_mm == 0
 
 
 def test_fanuc_adds_a_new_length_to_the_end_of_an_incremental_z_motion(motions) -> None:
-    settings = {"length_offsets_mm": LENGTHS, "start_mm": (0.0, 0.0, 500.0)}
+    settings = {"tools": LENGTHS, "start_mm": (0.0, 0.0, 500.0)}
     moved = motions("G91 G43 H1 Z-50\nZ-1\nX1", **settings)
     gauge = [m.end_mm[2] + m.state.length_offset_mm for m in moved]
     assert gauge == [500 - 50 + 100, 549, 549]
@@ -181,8 +190,8 @@ def test_fanuc_adds_a_new_length_to_the_end_of_an_incremental_z_motion(motions) 
 
 
 def test_g28_does_not_add_a_cancelled_length(motions) -> None:
-    settings = {"length_offsets_mm": LENGTHS, "start_mm": (0.0, 0.0, 300.0), "home_mm": (0.0, 0.0, 300.0)}
-    assert ends(motions("G43 H1 Z10\nG49 G91 G28 Z0", **settings)) == [(0, 0, 10), (0, 0, 300)]
+    settings = {"tools": LENGTHS, "start_mm": (0.0, 0.0, 300.0), "home_mm": (0.0, 0.0, 300.0)}
+    assert ends(motions("G43 H1 Z10\nG49 G91 G28 Z0", **settings)) == [(0, 0, 10), (0, 0, 110), (0, 0, 300)]
 
 
 @pytest.mark.parametrize(
@@ -191,7 +200,7 @@ def test_g28_does_not_add_a_cancelled_length(motions) -> None:
         ("home_mm", (0, 0, float("nan")), "home_mm must be three finite lengths, got (0, 0, nan)"),
         ("start_mm", (0, 0), "start_mm must be three finite lengths, got (0, 0)"),
         ("offsets", {"G54": (0, float("inf"), 0)}, "offsets['G54'] must be three finite lengths, got (0, inf, 0)"),
-        ("length_offsets_mm", {3: float("nan")}, "length_offsets_mm[3] must be finite, got nan"),
+        ("variables", {3: float("nan")}, "variables[3] must be finite, got nan"),
         ("tool", -1, "tool must be 0 or more, got -1"),
         ("arc_tolerance_mm", -0.1, "arc_tolerance_mm must be 0 or more, got -0.1"),
         ("units", "cm", "units must be one of mm, inch, got 'cm'"),

@@ -15,9 +15,9 @@ from gcode.dialects import DIALECTS
 from gcode.errors import GcodeError
 from gcode.events import PLANE_AXES, ArcMotion, Block, Event, LinearMotion, Point
 from gcode.interpret import check, interpret
-from gcode.settings import MachineSettings
+from gcode.settings import MachineSettings, ToolOffset
 
-SETTINGS = MachineSettings(length_offsets_mm={1: 75.0}, home_mm=(0.0, 0.0, 400.0), start_mm=(5.0, 5.0, 300.0))
+SETTINGS = MachineSettings(tools={1: ToolOffset(length_mm=75.0)}, home_mm=(0.0, 0.0, 400.0), start_mm=(5.0, 5.0, 300.0))
 PLANE = st.sampled_from(sorted(PLANE_AXES))
 SENSE = st.sampled_from([2, 3])
 LENGTH = st.floats(-300.0, 300.0).map(lambda x: round(x, 4))
@@ -136,7 +136,7 @@ def test_inch_and_incremental_rewrites_make_the_same_motions(points: list[Point]
 def test_each_motion_starts_where_the_last_ended() -> None:
     """Counted at the gauge point, which a change of the length offset leaves where it is."""
     moved = motions(run(PROGRAM))
-    assert len(moved) == 9
+    assert len(moved) == 10
     for before, after in pairwise(moved):
         gauge = [m[2] + s.length_offset_mm for m, s in ((before.end_mm, before.state), (after.start_mm, after.state))]
         assert before.end_mm[:2] == after.start_mm[:2]

@@ -20,8 +20,8 @@ from support.rs274_compare import our_moves, settings_of, timed
 from gcode.errors import GcodeError
 from gcode.events import ArcMotion, LinearMotion
 from gcode.interpret import check, interpret_file
+from gcode.program import read_program
 from gcode.settings import MachineSettings, ToolOffset
-from gcode.source import read_program
 
 #: The expected motions were read from text with four decimals of an inch.
 TOLERANCE_MM = 0.005

@@ -46,7 +46,7 @@ def test_a_table_in_mm(write: Write) -> None:
     assert read_tool_table(write("t.tbl", MILLS)) == {
         1: ToolOffset(length_mm=0.511, radius_mm=0.0625, pocket=2, comment="1/8 end mill"),
         2: ToolOffset(length_mm=0.1, radius_mm=0.03125, pocket=7),
-        16: ToolOffset(pocket=3),
+        16: ToolOffset(pocket=3, orientation=1),
         99999: ToolOffset(length_mm=-15.0, pocket=123),
     }
 
