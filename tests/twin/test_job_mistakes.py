@@ -19,7 +19,8 @@ CYLINDER = {"centre": [0, 0], "diameter": 10, "min": 0, "max": 5}
 MISTAKES: list[tuple[dict[str, Any], str]] = [
     (
         {"program__dialect": "heidenhain"},
-        'program.dialect = "heidenhain": expected one of "fanuc", "haas", "linuxcnc", "grbl" (control that the program is written for)',
+        'program.dialect = "heidenhain": expected one of "fanuc", "haas", "linuxcnc", "grbl" '
+        "(control that the program is written for)",
     ),
     ({"program__file": 3}, "program.file = 3: expected a file name (NC program, relative to the job file's folder)"),
     (

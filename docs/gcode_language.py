@@ -1,0 +1,205 @@
+"""The macro languages, settings and limits of the interpreter as tables."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from gcode_markdown import code, field_texts, table
+
+from gcode import bulk, leader, oflow, parse, program, splines, variables
+from gcode.compensation.fanuc import BLOCKS_READ_OVER
+from gcode.cycles.hole import MOST_STEPS
+from gcode.dialects import ArcTolerance, DwellWord
+from gcode.expressions import FANUC_MACRO, LINUXCNC_MACRO, MAX_DEPTH, MacroLanguage, Source, parse_operand
+from gcode.functions import MathError
+from gcode.settings import ADDITIONAL_OFFSETS, Limits, MachineSettings, ToolOffset
+from gcode.system_variables import _CONSTANTS as CONSTANTS
+from gcode.system_variables import _NAMED as NAMED
+from gcode.tables.text_file import LARGEST_BYTES
+
+LANGUAGES: Mapping[str, MacroLanguage] = {"fanuc, haas": FANUC_MACRO, "linuxcnc": LINUXCNC_MACRO}
+
+#: Functions and operators, and values of the argument that show what differs.
+EXAMPLES: tuple[tuple[str, str, str], ...] = (
+    ("SIN", "sine, degrees", "SIN[30]"),
+    ("COS", "cosine", "COS[60]"),
+    ("TAN", "tangent", "TAN[45]"),
+    ("ASIN", "arc sine", "ASIN[-0.5]"),
+    ("ACOS", "arc cosine", "ACOS[-0.5]"),
+    ("ATAN", "arc tangent of two lengths", "ATAN[-1]/[1]"),
+    ("ATAN", "of one number", "ATAN[1]"),
+    ("ATAN", "of two, with a comma", "ATAN[-1,1]"),
+    ("SQRT", "square root", "SQRT[2]"),
+    ("ABS", "size", "ABS[-2]"),
+    ("LN", "natural logarithm", "LN[2]"),
+    ("EXP", "exponential", "EXP[1]"),
+    ("POW", "power", "POW[2,10]"),
+    ("**", "power", "[2**10]"),
+    ("ROUND", "nearest whole number, halves away from 0", "ROUND[-2.5]"),
+    ("FIX", "whole number below (FANUC: towards 0)", "FIX[-2.5]"),
+    ("FUP", "whole number above (FANUC: away from 0)", "FUP[-2.5]"),
+    ("BIN", "from binary coded decimals", "BIN[16]"),
+    ("BCD", "to binary coded decimals", "BCD[10]"),
+    ("EXISTS", "1 where a variable was set", "EXISTS[#<a>]"),
+    ("MOD", "remainder", "[-7 MOD 3]"),
+    ("AND", "FANUC: of bits, LinuxCNC: of truth", "[6 AND 3]"),
+    ("OR", "the same", "[6 OR 3]"),
+    ("XOR", "the same", "[6 XOR 3]"),
+    ("EQ", "equal; LinuxCNC within 0.0001", "[1 EQ 1.00001]"),
+    ("NE", "not equal", "[1 NE 1.00001]"),
+    ("GT", "greater", "[2 GT 1]"),
+    ("GE", "greater or equal", "[2 GE 1]"),
+    ("LT", "less", "[2 LT 1]"),
+    ("LE", "less or equal", "[2 LE 1]"),
+    ("ADP", "value read with a decimal point", "ADP[1]"),
+    ("PRM", "parameter of the control", "PRM[1]"),
+)
+
+
+class _Nothing:
+    """A scope without variables."""
+
+    def number(self, _index: int) -> float | None:
+        return None
+
+    def named(self, _name: str) -> float | None:
+        return None
+
+    def exists(self, _name: str) -> bool:
+        return False
+
+    def has(self, _index: int) -> bool:
+        return False
+
+
+def functions() -> str:
+    """The functions and word operators, each with what it gives in each language."""
+    rows = (
+        (code(name), meaning, code(example), *(_value(example, name, language) for language in LANGUAGES.values()))
+        for name, meaning, example in EXAMPLES
+    )
+    return table(("name", "meaning", "example", *LANGUAGES), rows)
+
+
+def _value(example: str, name: str, language: MacroLanguage) -> str:
+    if name in language.refused:
+        return "refused"
+    text = example.replace(" ", "").upper()
+    try:
+        expression, end = parse_operand(Source(text, tuple(range(1, len(text) + 1)), language), 0)
+        value = expression.evaluate(_Nothing())
+    except (MathError, ArithmeticError):
+        raise
+    except Exception:  # an example that the language does not know is what the table says of it
+        return "–"
+    return "–" if end < len(text) or value is None else f"{value:.6g}"
+
+
+def operators() -> str:
+    """Operators by how tightly they bind."""
+    rows = []
+    for name, language in LANGUAGES.items():
+        ranks = sorted({rank for rank, _ in language.operators.values()}, reverse=True)
+        tiers = (" ".join(o for o in language.operators if language.operators[o][0] == rank) for rank in ranks)
+        rows.append((name, ", then ".join(code(tier) for tier in tiers)))
+    return table(("dialect", "tightest first"), rows)
+
+
+def named_parameters() -> str:
+    """LinuxCNC's named parameters."""
+    axes = [f"_{axis}" for axis in "xyzabcuvw"]
+    read = sorted([*NAMED, *axes, *(f"_abs{axis}" for axis in axes), "_call_level", "_line"])
+    rows = [("of the control as it stands", ", ".join(code(f"#<{name}>") for name in read))]
+    fixed = (f"{code(f'#<{name}>')} {CONSTANTS[name]:g}" for name in sorted(CONSTANTS))
+    return table(("", "names"), [*rows, ("with one value", ", ".join(fixed))])
+
+
+def field_table(kind: type, values: Mapping[str, Any], *, leave_out: Sequence[str] = ()) -> str:
+    """The fields of a dataclass with their docstrings, and the value in each of several of its objects.
+
+    Args:
+        kind: the dataclass.
+        values: objects of it by name.
+        leave_out: fields that are shown elsewhere.
+    """
+    texts = field_texts(kind)
+    names = [field.name for field in dataclasses.fields(kind) if field.name not in leave_out]
+    rows = ((code(name), texts[name], *(shown(getattr(one, name)) for one in values.values())) for name in names)
+    return table(("field", "meaning", *values), rows)
+
+
+def settings_table() -> str:
+    """Fields of `MachineSettings`, `Limits` and `ToolOffset` with their defaults."""
+    rows = []
+    for kind, prefix in ((MachineSettings, ""), (ToolOffset, "tools.N."), (Limits, "limits.")):
+        texts, default = field_texts(kind), kind()
+        for field in dataclasses.fields(kind):
+            if field.name not in ("tools", "limits"):
+                value = getattr(default, field.name)
+                rows.append((code(prefix + field.name), texts[field.name], _default(field.name, value)))
+    return table(("key", "meaning", "default"), rows)
+
+
+def _default(name: str, value: Any) -> str:
+    return "all at 0" if name == "offsets" else shown(value)
+
+
+def shown(value: Any) -> str:
+    """A value in words."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if value is None or value in ("", ()) or (isinstance(value, Mapping | frozenset) and not value):
+        return "none"
+    if isinstance(value, ArcTolerance):
+        return _tolerance(value)
+    if dataclasses.is_dataclass(value):
+        return _fields(value)
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key}: {shown(value[key])}" for key in value)
+    if isinstance(value, frozenset):
+        return ", ".join(sorted(map(shown, value)))
+    if isinstance(value, tuple):
+        return ", ".join(map(shown, value))
+    return f"{value:.6g}" if isinstance(value, float) else f"{value:,}" if isinstance(value, int) else str(value)
+
+
+def _tolerance(value: ArcTolerance) -> str:
+    text = f"{value.absolute_mm:.6g} mm"
+    if value.absolute_inch_mm is not None:
+        text += f" (G20: {value.absolute_inch_mm / 25.4:.6g} inch)"
+    return text + (f", or {value.relative:g} of the radius up to {value.most:g} times that" if value.relative else "")
+
+
+def _fields(value: Any) -> str:
+    if isinstance(value, DwellWord):
+        pointed = "refused" if value.pointed is None else f"{value.pointed:g} s"
+        return f"{value.seconds:g} s, with a point {pointed}"
+    given = ((field.name, getattr(value, field.name)) for field in dataclasses.fields(value))
+    return ", ".join(f"{re.sub('_', ' ', name)} {shown(one)}" for name, one in given if one is not None)
+
+
+def limits() -> str:
+    """How large and deep things may be."""
+    given = Limits()
+    rows = (
+        ("blocks executed", f"{given.blocks:,}", "setting `limits.blocks`"),
+        ("calls inside each other", str(given.nesting), "setting `limits.nesting`"),
+        ("mistakes that `check` collects", str(given.errors), "setting `limits.errors`"),
+        ("size of a program file", f"{program.MAX_BYTES // 2**20:,} MiB", ""),
+        ("size of a table or settings file", f"{LARGEST_BYTES // 2**20} MiB", ""),
+        ("length of a line", f"{parse.MAX_LINE:,} characters", ""),
+        ("size of a number", f"{parse.MAX_VALUE:,.0f}", ""),
+        ("brackets inside each other", str(MAX_DEPTH), ""),
+        ("steps of one block with a cycle", f"{MOST_STEPS:,}", ""),
+        ("additional work offsets", str(ADDITIONAL_OFFSETS), "G54.1 P"),
+        ("named parameters of a level", f"{variables._MOST_NAMES:,}", "LinuxCNC"),
+        ("arguments of a subroutine", str(oflow._ARGUMENTS), "LinuxCNC"),
+        ("lines before the % of a leader", str(leader.LEADER_LINES), "FANUC, Haas"),
+        ("blocks without motion read over by compensation", str(BLOCKS_READ_OVER), "FANUC, Haas"),
+        ("straight motions for a spline", str(splines.CURVE_PIECES), "LinuxCNC"),
+        ("lines taken at once", f"{bulk.MAX_LINES:,}", "plain straight motions; nothing to be seen of it"),
+    )
+    return table(("what", "at most", ""), rows)

@@ -1,0 +1,165 @@
+"""Variables of the macro languages as the interpreter reads and sets them: found by asking it for every number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from gcode.dialects import Dialect
+from gcode.events import Notice
+from gcode.expressions import EvaluationError
+from gcode.program import program_of
+from gcode.runner import Runner
+from gcode.settings import MachineSettings
+
+#: One more than the largest number that is asked for.
+NUMBERS_END = 30_000
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """What becomes of a variable that is read and one that is set, in words."""
+
+    read: str
+    write: str
+
+
+NO_ACCESS = Access("refused", "refused")
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Variables that mean the same.
+
+    Attributes:
+        text: their numbers as the page shows them.
+        numbers: all of them.
+        meaning: what they hold.
+    """
+
+    text: str
+    numbers: frozenset[int]
+    meaning: str
+
+
+def _row(meaning: str, *spans: tuple[int, int], step: int = 0, count: int = 1) -> Row:
+    """A row of spans, both ends included; with a step they come again `count` times."""
+    numbers = {n + k * step for first, last in spans for n in range(first, last + 1) for k in range(count)}
+    shown = [f"#{first}" if first == last else f"#{first}–#{last}" for first, last in spans]
+    if step:
+        (first, last), end = spans[0], (count - 1) * step
+        shown += [f"#{first + step}–#{last + step}", "…", f"#{first + end}–#{last + end}"]
+    return Row(", ".join(shown), frozenset(numbers), meaning)
+
+
+FANUC_ROWS = (
+    _row("vacant", (0, 0)),
+    _row("local variables of a macro call", (1, 33)),
+    _row("common variables", (100, 199), (500, 999)),
+    _row("length wear of tool offset 1 to 200, older numbering", (2001, 2200)),
+    _row("length geometry of tool offset 1 to 200, older numbering", (2201, 2400)),
+    _row("alarm: its number, and the comment as its message", (3000, 3000)),
+    _row("clocks and the date", (3001, 3002), (3011, 3012)),
+    _row("single-block control, feed control, settings, mirror image status", (3003, 3005), (3007, 3007)),
+    _row("stop with the comment as its message", (3006, 3006)),
+    _row("active code of modal group 1 to 3, 5 to 11, 13, 14, 16, 17, 22", (4001, 4003), (4005, 4011), (4013, 4014)),
+    _row("the same, further groups", (4016, 4017), (4022, 4022)),
+    _row("D, F and H that hold", (4107, 4107), (4109, 4109), (4111, 4111)),
+    _row("number of the last N word, and of the program", (4114, 4115)),
+    _row("S and T that hold, number of the additional work offset", (4119, 4120), (4130, 4130)),
+    _row("end of the block before, program coordinates", (5001, 5003)),
+    _row("position, machine coordinates", (5021, 5023)),
+    _row("position, program coordinates", (5041, 5043)),
+    _row("active tool offset", (5081, 5083)),
+    _row("external work offset", (5201, 5203)),
+    _row("work offsets G54 to G59", (5221, 5223), step=20, count=6),
+    _row("additional work offsets G54.1 P1 to P48", (7001, 7003), step=20, count=48),
+    _row("tool offsets 1 to 400, length wear", (10001, 10400)),
+    _row("tool offsets 1 to 400, length geometry", (11001, 11400)),
+    _row("tool offsets 1 to 400, radius wear", (12001, 12400)),
+    _row("tool offsets 1 to 400, radius geometry", (13001, 13400)),
+    _row("additional work offsets G54.1 P1 to P300", (14001, 14003), step=20, count=300),
+)
+_LINUXCNC_KNOWN = (
+    _row("arguments and own variables of a subroutine", (1, 30)),
+    _row("the program's own", (31, 5000)),
+    _row("reference point of G28, X Y Z", (5161, 5163)),
+    _row("the same, A B C U V W", (5164, 5169)),
+    _row("reference point of G30, X Y Z", (5181, 5183)),
+    _row("the same, A B C U V W", (5184, 5189)),
+    _row("1 where G92 holds, and its nine offsets", (5210, 5219)),
+    _row("active work offset, 1 for G54 to 9 for G59.3", (5220, 5220)),
+    _row("work offsets G54 to G59.3: nine axes and the rotation, degrees", (5221, 5230), step=20, count=9),
+    _row("number of the tool in the spindle", (5400, 5400)),
+    _row("active tool offset, nine axes", (5401, 5409)),
+    _row("diameter of the tool in the spindle", (5410, 5410)),
+    _row("position in program coordinates, nine axes", (5420, 5428)),
+    _row("always 0", (5411, 5419), (5429, 5429)),
+)
+LINUXCNC_ROWS = (
+    *_LINUXCNC_KNOWN,
+    Row(
+        "the others of #5001–#5601",
+        frozenset(range(5001, 5602)).difference(*(row.numbers for row in _LINUXCNC_KNOWN)),
+        "without a meaning: what the program stored, else 0 (#5599: 1)",
+    ),
+)
+
+
+def access_of(dialect: Dialect, numbers: Iterable[int]) -> dict[int, Access]:
+    """What becomes of each variable."""
+    runner = Runner(program_of("", "variables"), dialect, MachineSettings(), _ignore)
+    start = runner.state
+    found: dict[int, Access] = {}
+    for number in numbers:
+        read = _read(runner, number)
+        found[number] = Access(read, _write(runner, number))
+        runner.state = start
+        runner.pending.clear()
+    return found
+
+
+def _ignore(_error: Exception) -> None:
+    """Nothing is run, so nothing is refused."""
+
+
+def _read(runner: Runner, number: int) -> str:
+    try:
+        runner.variables.number(number)
+    except EvaluationError:
+        return "refused"
+    return "yes"
+
+
+def _write(runner: Runner, number: int) -> str:
+    before = runner.state
+    try:
+        runner.variables.set_number(number, 1.0)
+    except EvaluationError as error:
+        return "raises it" if error.code == "alarm" else "refused"
+    if runner.pending:
+        return "no motion" if isinstance(runner.pending[0], Notice) else "stops"
+    if runner.state is not before:
+        return "takes effect"
+    return "stored only" if number in runner.spare else "yes"
+
+
+def rows_of(dialect: Dialect) -> tuple[Row, ...]:
+    """The rows of a dialect's macro language, none where it has no variables."""
+    if not dialect.macro.operators:
+        return ()
+    return FANUC_ROWS if dialect.macro.vacant else LINUXCNC_ROWS
+
+
+def described(dialect: Dialect) -> Iterator[tuple[Row, Access]]:
+    """The rows, each with what becomes of its variables.
+
+    Raises:
+        ValueError: where the variables of a row differ in that.
+    """
+    access = access_of(dialect, sorted({n for row in rows_of(dialect) for n in row.numbers}))
+    for row in rows_of(dialect):
+        kinds = {access[number] for number in row.numbers}
+        if len(kinds) != 1:
+            raise ValueError(f"{row.text} are read and set in different ways: {sorted(map(str, kinds))}")
+        yield row, kinds.pop()

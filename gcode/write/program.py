@@ -1,0 +1,119 @@
+"""Whole programs from streams of events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from gcode.events import (
+    ArcMotion,
+    Block,
+    CoolantChange,
+    Dwell,
+    Event,
+    LinearMotion,
+    Notice,
+    ProgramStop,
+    SpindleChange,
+    ToolChange,
+)
+from gcode.write.control import Control, Stream
+from gcode.write.machine import coolant, dwell, spindle_change, stop, tool_change
+from gcode.write.moves import motion
+from gcode.write.options import WriteOptions
+
+
+def program_lines(events: Iterable[Event], options: WriteOptions | None = None) -> Iterator[str]:
+    """The lines of a program that makes these events happen.
+
+    The program's motions are the events' motions with each point rounded to the decimals that are written, so no
+    error adds up, incremental programs included. An arc that rounding would make another arc, or that the control
+    would refuse, becomes chords within one count of the last decimal. Every feed is one per minute (G94). Cutter
+    compensation, work offsets, subprograms and cycles are already in the motions and are not written again, but for
+    taps. Tool, spindle and length offset are taken from the events that change them and, where there are none, from
+    the motions' states. `Block` and `Notice` say nothing.
+
+    Args:
+        events: what `interpret` yields, or motions that one has made; each begins where the last one ends.
+        options: default `WriteOptions()`.
+
+    Yields:
+        Lines without their ends.
+
+    Raises:
+        WriteError: at the first event that cannot be said; the lines before it have been yielded.
+    """
+    options = options or WriteOptions()
+    control = Control(options, options.grid, options.tool)
+    stream = Stream(iter(enumerate(events)))
+    yield from _beginning(control)
+    while (item := stream.take()) is not None:
+        control.index, event = item
+        yield from _blocks(control, event, stream)
+    yield from _ending(control)
+
+
+def write_file(path: Path | str, events: Iterable[Event], options: WriteOptions | None = None) -> int:
+    """Writes a program file, whole or not at all: what is there already stays until the new one is complete.
+
+    Returns:
+        Number of lines.
+
+    Raises:
+        WriteError: see `program_lines`.
+        OSError: where the file cannot be written.
+    """
+    path, lines = Path(path), 0
+    partial = path.with_name(f"{path.name}.partial")
+    try:
+        with partial.open("w", encoding="ascii", newline="\n") as file:
+            for line in program_lines(events, options):
+                file.write(f"{line}\n")
+                lines += 1
+        partial.replace(path)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+    return lines
+
+
+def _beginning(control: Control) -> Iterator[str]:
+    options, rules = control.options, control.options.rules
+    if options.with_percent:
+        yield "%"
+    if options.program_number is not None:
+        yield f"O{options.program_number:0{rules.program_digits}d}"
+    for line in options.header:
+        yield f"({line})"
+    modes = rules.safe_start if options.safe_start else "G90"
+    control.words["distance"] = "G90"
+    if options.safe_start:
+        control.words["plane"] = "G17"
+    yield control.line("G20" if options.units == "inch" else "G21", modes, *([options.wcs] if options.wcs else []))
+
+
+def _ending(control: Control) -> Iterator[str]:
+    if not control.ended:
+        yield control.line("M30")
+    if control.options.with_percent:
+        yield "%"
+
+
+def _blocks(control: Control, event: Event, stream: Stream) -> Iterator[str]:
+    if control.ended and not isinstance(event, Block | Notice):
+        raise control.error(event, "after-end", "an event behind the program's end", "the end as the last event")
+    match event:
+        case LinearMotion() | ArcMotion():
+            return motion(control, event, stream)
+        case ToolChange():
+            return tool_change(control, event)
+        case SpindleChange():
+            return spindle_change(control, event)
+        case CoolantChange():
+            return coolant(control, event)
+        case Dwell():
+            return dwell(control, event)
+        case ProgramStop():
+            return stop(control, event)
+        case Block() | Notice():
+            return iter(())
