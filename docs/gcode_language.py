@@ -74,6 +74,9 @@ class _Nothing:
     def has(self, _index: int) -> bool:
         return False
 
+    def steps(self, _letter: str) -> int:
+        return 0
+
 
 def functions() -> str:
     """The functions and word operators, each with what it gives in each language."""

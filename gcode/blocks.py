@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from gcode.errors import GcodeError, Place
 from gcode.expressions import EvaluationError, Expression, Scope
+from gcode.functions import rounded
 from gcode.statements import Assignment, Statement
 
 
@@ -76,8 +77,12 @@ class ParsedBlock:
         """The error that refuses this block because of what stands at `column`."""
         return GcodeError(self.place_at(column), code, problem, expected)
 
-    def evaluated(self, scope: Scope) -> ParsedBlock:
+    def evaluated(self, scope: Scope, *, exact: bool = False) -> ParsedBlock:
         """The block with plain numbers; words whose value is vacant are left out.
+
+        Args:
+            scope: values of variables, and to what the numbers of each address are rounded.
+            exact: True where nothing is rounded.
 
         Raises:
             GcodeError: for a word whose expression has no value.
@@ -89,7 +94,8 @@ class ParsedBlock:
                 continue
             value = self.value_of(word.expression, scope)
             if value is not None:
-                words.append(word._replace(value=value, expression=None))
+                steps = 0 if exact else scope.steps(word.letter)
+                words.append(word._replace(value=rounded(value, steps) if steps else value, expression=None))
         return replace(self, words=tuple(words), plain=True)
 
     def value_of(self, expression: Expression, scope: Scope) -> float | None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
-from gcode.functions import FANUC_MACRO, LINUXCNC_MACRO, NO_MACRO, MacroLanguage, MathError
+from gcode.functions import FANUC_MACRO, LINUXCNC_MACRO, NO_MACRO, MacroLanguage, MathError, rounded
 from gcode.statements import Variable
 
 __all__ = [
@@ -66,6 +66,9 @@ class Scope(Protocol):
     def has(self, index: int) -> bool:
         """True where there is a variable #index."""
 
+    def steps(self, letter: str) -> int:
+        """Least input increments of an address that make one unit, 0 where its numbers are not rounded."""
+
 
 @dataclass(frozen=True, slots=True)
 class Expression:
@@ -95,11 +98,19 @@ class Expression:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A line without its blanks and comments, in upper case, and the column of each character left."""
+    """A line without its blanks and comments, in upper case, and the column of each character left.
+
+    Attributes:
+        text: the characters.
+        columns: column of each.
+        language: macro language.
+        letter: address whose number is being read, empty outside of words.
+    """
 
     text: str
     columns: tuple[int, ...]
     language: MacroLanguage
+    letter: str = ""
 
     def column(self, position: int) -> int:
         """Column of a character, or of the end."""
@@ -312,10 +323,12 @@ def _existence(source: Source, bracket: int) -> tuple[Function, int]:
 
 def _of_one(source: Source, position: int, name: str, argument: Function) -> Function:
     function, column = source.language.functions[name], source.column(position)
+    letter = source.letter if name == "ROUND" else ""
 
     def value(scope: Scope) -> float:
         try:
-            return function(argument(scope) or 0.0)
+            steps = scope.steps(letter) if letter else 0
+            return rounded(argument(scope) or 0.0, steps) if steps else function(argument(scope) or 0.0)
         except MathError as error:
             raise EvaluationError("bad-operation", error.problem, error.expected, column) from None
         except (OverflowError, ValueError):

@@ -41,7 +41,8 @@ class ModalMacro:
 
 def evaluated(runner: Runner, block: ParsedBlock) -> ParsedBlock:
     """The block with plain numbers for words; its assignments are made."""
-    words = block if block.plain else block.evaluated(runner.variables.scope())
+    call = any(word.letter == "G" and word.value in _MACRO_CALLS for word in block.words)
+    words = block if block.plain else block.evaluated(runner.variables.scope(), exact=call)
     assign(runner, block, block.assignments)
     return _scaled(runner, words)
 
@@ -51,7 +52,7 @@ def _scaled(runner: Runner, block: ParsedBlock) -> ParsedBlock:
     letters = runner.dialect.increment_letters
     if runner.settings.decimal_point != "increment" or not letters:
         return block
-    increment = 0.001 if runner.state.modes.unit_mm == 1.0 else 0.0001
+    increment = 1.0 / runner.least_increments
     if any(word.letter == "G" and word.value in (20.0, 21.0) for word in block.words):
         increment = 0.001 if any(word.letter == "G" and word.value == 21.0 for word in block.words) else 0.0001
     words = tuple(
@@ -106,7 +107,7 @@ def execute(runner: Runner, block: ParsedBlock, statement: Statement) -> Iterato
             _goto(runner, block, statement)
         case IfThen():
             if _true(runner, block, statement.condition):
-                evaluated(runner, statement.then)
+                _then(runner, block, statement)
         case While():
             _while(runner, block, statement)
         case End():
@@ -116,6 +117,14 @@ def execute(runner: Runner, block: ParsedBlock, statement: Statement) -> Iterato
             yield Notice(place=block.place_at(statement.column), code="no-motion", text=text)
         case OWord():
             oflow.execute(runner, block, statement)
+
+
+def _then(runner: Runner, block: ParsedBlock, statement: IfThen) -> None:
+    """What stands behind THEN: one assignment, and no words."""
+    if statement.then.words or len(statement.then.assignments) != 1:
+        shown = statement.then.words[0].text if statement.then.words else "nothing"
+        raise block.error_at(statement.column, "bad-statement", f"{shown} behind THEN", "one assignment, #i = value")
+    evaluated(runner, statement.then)
 
 
 def _true(runner: Runner, block: ParsedBlock, condition: Expression) -> bool:
@@ -207,7 +216,7 @@ def call_macro(runner: Runner, block: ParsedBlock, macro: tuple[Word, tuple[Word
     count = next((int(w.value) for w in words if w.letter == "L"), 1)
     if number is None and block.name is None:
         raise block.error(word, "missing-word", f"{word.text} without P", "P and the number of a program")
-    arguments = macro_arguments(block, [w for w in words if w.letter not in "PLNO"])
+    arguments = macro_arguments(block, [w for w in words if w.letter not in "PL"])
     program, spot, name = _find(runner, block, word, number)
     modal = ModalMacro(program=program, spot=spot, name=name, arguments=arguments, count=count)
     if word.value == 65.0:

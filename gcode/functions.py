@@ -12,6 +12,8 @@ Unary: TypeAlias = Callable[[float], float]
 
 #: LinuxCNC takes two values nearer than this as equal.
 _EQUAL = 1e-4
+#: What arithmetic in doubles may take from a half, in least input increments.
+_HALF = 1e-6
 #: Whole numbers below this are exact, so they have bits.
 _LARGEST_BITS = 1 << 53
 
@@ -140,6 +142,11 @@ def _whole(function: Callable[[float], int]) -> Unary:
 
 def _half_away(value: float) -> int:
     return int(value + math.copysign(0.5, value))
+
+
+def rounded(value: float, steps: int) -> float:
+    """The nearest multiple of 1/`steps`, halves away from 0, as a number of an address is rounded."""
+    return _half_away(value * steps + math.copysign(_HALF, value)) / steps
 
 
 def _away(value: float) -> int:

@@ -248,7 +248,7 @@ def _worked_out(place: Place, source: Source, start: int, letter: str, position:
     column = source.column(start)
     signed = digits in ("", "+", "-")
     if signed and source.language.name != "none" and (following in ("#", "[") or _function_follows(source, position)):
-        expression, end = parse_operand(source, position)
+        expression, end = parse_operand(replace(source, letter=letter), position)
         return Word(letter, 0.0, letter + expression.text, column, expression), end
     if signed:
         keyword = _KEYWORD.match(source.text, start)

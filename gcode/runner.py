@@ -65,6 +65,7 @@ class Runner:
             set_system=self.system.write,
             system_name=self.system.named,
             initial=settings.variables,
+            steps=self.steps_of,
         )
         self.spare: dict[int, tuple[float, Setup]] = {}
         self.pending: list[Event] = []
@@ -81,6 +82,17 @@ class Runner:
     def level(self) -> Level:
         """The innermost level."""
         return self.levels[-1]
+
+    @property
+    def least_increments(self) -> int:
+        """Least input increments of a length that make one unit: 0.001 mm, or 0.0001 inch."""
+        return 1000 if self.state.modes.unit_mm == 1.0 else 10_000
+
+    def steps_of(self, letter: str) -> int:
+        """Parts of a unit to which a worked out number of an address is rounded, 0 for no rounding."""
+        if letter in self.dialect.increment_letters:
+            return self.least_increments
+        return int(letter in self.dialect.whole_letters)
 
     def run(self) -> Iterator[Event | PlainBatch]:
         """The events of the program; refused blocks go to `refuse`, and if that returns, the program goes on."""

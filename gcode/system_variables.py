@@ -147,7 +147,7 @@ class SystemVariables:
         points: Mapping[int, Callable[[], tuple[float, float, float]]] = {
             5000: lambda: state.program_mm,
             5020: lambda: state.gauge_mm,
-            5040: lambda: state.program_mm,
+            5040: lambda: state.frame.to_program(state.gauge_mm),
             5080: lambda: (0.0, 0.0, state.machine.length_offset_mm),
         }
         base = index - (index % 20) if index % 20 else 0

@@ -26,6 +26,7 @@ class Variables:
         set_system: writes one.
         system_name: reads a named one that is the control's, None where there is none of that name.
         initial: values at the start.
+        steps: least input increments of an address that make one unit, 0 where its numbers are not rounded.
     """
 
     def __init__(
@@ -36,11 +37,13 @@ class Variables:
         set_system: Callable[[int, float | None], None],
         system_name: Callable[[str], float | None],
         initial: Mapping[int, float],
+        steps: Callable[[str], int],
     ) -> None:
         self._language = language
         self._system = system
         self._set_system = set_system
         self._system_name = system_name
+        self._steps = steps
         self._own = _COMMON if language.vacant else (_GLOBALS,)
         self._common: dict[int, float] = {n: v for n, v in initial.items() if self._is_common(n)}
         self._locals: list[dict[int, float]] = [{n: v for n, v in initial.items() if 0 < n <= language.locals}]
@@ -104,6 +107,10 @@ class Variables:
         except EvaluationError:
             return False
         return index > 0
+
+    def steps(self, letter: str) -> int:
+        """Least input increments of an address that make one unit, 0 where its numbers are not rounded."""
+        return self._steps(letter)
 
     def _table(self, name: str) -> dict[str, float]:
         return self._global_names if name.startswith("_") else self._names[-1]

@@ -72,7 +72,8 @@ class Dialect:
         whole_block_numbers: an N word is a whole number.
         corner_letters: letters that cut or round the corner between two feed motions.
         increment_letters: letters whose numbers count least increments where they have no decimal point and the
-            machine is set so.
+            machine is set so, and are rounded to them where a program works them out.
+        whole_letters: letters whose numbers are rounded to whole ones where a program works them out.
         power_on_motion: motion code that holds before the program names one; ``G80`` for none.
         macro: its variables, expressions and jumps.
         cycles: its canned cycles, None for none.
@@ -113,6 +114,7 @@ class Dialect:
     whole_block_numbers: bool
     corner_letters: tuple[str, ...]
     increment_letters: frozenset[str]
+    whole_letters: frozenset[str]
     power_on_motion: str
     macro: MacroLanguage
     cycles: CycleRules | None

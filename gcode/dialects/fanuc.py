@@ -85,6 +85,7 @@ FANUC = Dialect(
     whole_block_numbers=True,
     corner_letters=(",C", ",R"),
     increment_letters=frozenset(["X", "Y", "Z", "I", "J", "K", "R", "Q", ",C", ",R"]),
+    whole_letters=frozenset("DHLMOST"),
     power_on_motion="G0",
     macro=FANUC_MACRO,
     cycles=FANUC_CYCLES,

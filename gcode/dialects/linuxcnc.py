@@ -76,6 +76,7 @@ LINUXCNC = Dialect(
     whole_block_numbers=False,
     corner_letters=(),
     increment_letters=frozenset(),
+    whole_letters=frozenset(),
     power_on_motion="G80",
     macro=LINUXCNC_MACRO,
     cycles=LINUXCNC_CYCLES,
