@@ -7,6 +7,7 @@ from collections.abc import Mapping
 #: Meaning of each `GcodeError.code`.
 ERRORS: Mapping[str, str] = {
     "abort": "a comment `(abort, ...)` ends the program (LinuxCNC)",
+    "after-end": "written events go on behind the program's end",
     "alarm": "the program raises an alarm by `#3000` (FANUC)",
     "arc-centre-incomplete": "with G90.1 only one word of an arc's centre is given",
     "arc-no-chord": "an arc by R ends where it starts",
@@ -62,9 +63,11 @@ ERRORS: Mapping[str, str] = {
     "cycle-word": "a word that the cycle does not take",
     "file-kind": "a table or settings file with another ending",
     "foreign-control": "a program for another kind of control, or a file that is no program",
+    "further-axes": "a written motion moves further axes",
     "g53-compensation": "G53 while compensation is on",
     "g53-incremental": "G53 with G91",
     "g53-motion": "G53 while neither G0 nor G1 is active (LinuxCNC, GRBL)",
+    "gap": "a written motion does not begin where the last one ends",
     "group-conflict": "two codes of one modal group in a block",
     "lathe-tool": "compensation with a lathe tool, whose edge does not lie all around",
     "line-too-long": "a line that no control would read",
@@ -101,8 +104,11 @@ ERRORS: Mapping[str, str] = {
     "settings-value": "a value of a settings file that is not as expected",
     "spindle-stopped": "G33 or G33.1 while the spindle stands",
     "spline-plane": "G5 or G5.1 outside of G17",
+    "tap": "a written tap that no cycle of the control makes",
     "text-after-statement": "text behind a statement",
     "too-many-variables": "more named parameters than are kept",
+    "tool-change": "a written tool change for a control without one",
+    "tool-length": "a written tool length that the control has no word for",
     "tool-table-axis": "an offset along a rotary or parallel axis in a tool table",
     "tool-table-duplicate": "a tool, or a word of a row, twice",
     "tool-table-format": "a tool table of columns, as before LinuxCNC 2.5",
@@ -135,7 +141,7 @@ ERRORS: Mapping[str, str] = {
 #: Meaning of each `Notice.code`.
 NOTICES: Mapping[str, str] = {
     "block-deleted": "block delete is on: the block was left out",
-    "compensation-look-ahead": "FANUC reads two blocks without motion over; more follow, so the corner is not compensated",
+    "compensation-look-ahead": "more than two blocks without motion follow: the corner is not compensated (FANUC, Haas)",
     "data-entry": "a block between G10 L3 or L50 and G11 is data, and is not executed",
     "leader": "lines before the first % are a leader, and are not executed",
     "no-motion": "a word that was understood and moves nothing",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from gcode_markdown import code, field_texts, table
@@ -13,8 +13,15 @@ from gcode import bulk, leader, oflow, parse, program, splines, variables
 from gcode.compensation.fanuc import BLOCKS_READ_OVER
 from gcode.cycles.hole import MOST_STEPS
 from gcode.dialects import ArcTolerance, DwellWord
-from gcode.expressions import FANUC_MACRO, LINUXCNC_MACRO, MAX_DEPTH, MacroLanguage, Source, parse_operand
-from gcode.functions import MathError
+from gcode.expressions import (
+    FANUC_MACRO,
+    LINUXCNC_MACRO,
+    MAX_DEPTH,
+    EvaluationError,
+    MacroLanguage,
+    Source,
+    parse_operand,
+)
 from gcode.settings import ADDITIONAL_OFFSETS, Limits, MachineSettings, ToolOffset
 from gcode.system_variables import _CONSTANTS as CONSTANTS
 from gcode.system_variables import _NAMED as NAMED
@@ -94,9 +101,7 @@ def _value(example: str, name: str, language: MacroLanguage) -> str:
     try:
         expression, end = parse_operand(Source(text, tuple(range(1, len(text) + 1)), language), 0)
         value = expression.evaluate(_Nothing())
-    except (MathError, ArithmeticError):
-        raise
-    except Exception:  # an example that the language does not know is what the table says of it
+    except EvaluationError:
         return "–"
     return "–" if end < len(text) or value is None else f"{value:.6g}"
 
@@ -113,11 +118,18 @@ def operators() -> str:
 
 def named_parameters() -> str:
     """LinuxCNC's named parameters."""
-    axes = [f"_{axis}" for axis in "xyzabcuvw"]
-    read = sorted([*NAMED, *axes, *(f"_abs{axis}" for axis in axes), "_call_level", "_line"])
-    rows = [("of the control as it stands", ", ".join(code(f"#<{name}>") for name in read))]
-    fixed = (f"{code(f'#<{name}>')} {CONSTANTS[name]:g}" for name in sorted(CONSTANTS))
-    return table(("", "names"), [*rows, ("with one value", ", ".join(fixed))])
+    axes = "xyzabcuvw"
+    rows = (
+        ("position in program coordinates", _names(f"_{axis}" for axis in axes)),
+        ("gauge point in machine coordinates", _names(f"_abs_{axis}" for axis in axes)),
+        ("of the control as it stands", _names(sorted([*NAMED, "_call_level", "_line"]))),
+        ("with one value", ", ".join(f"{code(f'#<{name}>')} {CONSTANTS[name]:g}" for name in sorted(CONSTANTS))),
+    )
+    return table(("what", "names"), rows)
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(code(f"#<{name}>") for name in names)
 
 
 def field_table(kind: type, values: Mapping[str, Any], *, leave_out: Sequence[str] = ()) -> str:

@@ -1,7 +1,7 @@
 """The tables of gcode.md, made from the tables that the interpreter runs on.
 
-    python docs/gcode_tables.py            # rewrites the parts of gcode.md between the markers
-    python docs/gcode_tables.py --check    # says whether the page is out of date: exit code 1
+python docs/gcode_tables.py            # rewrites the parts of gcode.md between the markers
+python docs/gcode_tables.py --check    # says whether the page is out of date: exit code 1
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from gcode_diagnostics import ERRORS, NOTICES
 from gcode_language import field_table, functions, limits, named_parameters, operators, settings_table
 from gcode_markdown import code, table
 from gcode_variables import described
-from gcode_words import LETTERS, PHASES, letter_status
+from gcode_words import LETTERS, PHASES, WORD_PHASES, letter_status
 
 from gcode.codes import CodeRule, Status
 from gcode.cycles import CycleRules
@@ -55,9 +55,9 @@ ACTS: Mapping[Act, str] = {
     Act.RESTART: "spindle on again",
     Act.ORIENT: "spindle orientation",
     Act.OPERATOR: "stop for the operator",
-    Act.TAP_START: "spindle on if it stands",
+    Act.TAP_START: "spindle on if the tap is rigid",
     Act.TAP_REVERSE: "spindle reversed",
-    Act.TAP_END: "spindle as before",
+    Act.TAP_END: "spindle forward, or stopped if rigid",
     Act.TAP_BOTTOM: "tap to Z",
     Act.TAP_R: "tap out to R",
     Act.TAP_CLEAR: "tap out to the return level",
@@ -116,14 +116,20 @@ def _letters() -> str:
 
 
 def _phases() -> str:
-    rows = ((PHASES[phase], *(_position(d, phase) for d in DIALECTS.values())) for phase in DIALECTS["fanuc"].order)
-    more = (phase for phase in DIALECTS["linuxcnc"].order if phase not in DIALECTS["fanuc"].order)
-    further = ((PHASES[phase], *(_position(d, phase) for d in DIALECTS.values())) for phase in more)
-    return table(("step", *_NAMES), (*rows, *further))
+    orders = [_order(dialect) for dialect in DIALECTS.values()]
+    phases = dict.fromkeys(phase for order in orders for phase in order)
+    rows = ((PHASES[phase], *(_position(order, phase) for order in orders)) for phase in phases)
+    return table(("step", *_NAMES), rows)
 
 
-def _position(dialect: Dialect, phase: str) -> str:
-    return str(dialect.order.index(phase) + 1) if phase in dialect.order else NOT_THERE
+def _order(dialect: Dialect) -> tuple[str, ...]:
+    """The steps of a dialect that something asks for."""
+    used = {rule.phase for rule in dialect.codes.values()} | WORD_PHASES
+    return tuple(phase for phase in dialect.order if phase in used)
+
+
+def _position(order: tuple[str, ...], phase: str) -> str:
+    return str(order.index(phase) + 1) if phase in order else NOT_THERE
 
 
 def _cycle_rules() -> dict[str, CycleRules]:
@@ -133,12 +139,14 @@ def _cycle_rules() -> dict[str, CycleRules]:
 def _cycles() -> str:
     rules = _cycle_rules()
     names = sorted({name for one in rules.values() for name in one.cycles}, key=_rank)
-    rows = []
-    for name in names:
-        texts = {dialect: _cycle_row(one.cycles[name]) for dialect, one in rules.items() if name in one.cycles}
-        for text in dict.fromkeys(texts.values()):
-            rows.append((name, ", ".join(d for d in texts if texts[d] == text), *text))
+    rows = (row for name in names for row in _cycle_rows(name, rules))
     return table(("code", "dialects", "meaning", "own words", "needed", "steps over the hole"), rows)
+
+
+def _cycle_rows(name: str, rules: Mapping[str, CycleRules]) -> list[tuple[str, ...]]:
+    """A row for each way in which the dialects run a cycle."""
+    texts = {dialect: _cycle_row(one.cycles[name]) for dialect, one in rules.items() if name in one.cycles}
+    return [(name, ", ".join(d for d in texts if texts[d] == text), *text) for text in dict.fromkeys(texts.values())]
 
 
 def _cycle_row(cycle: Cycle) -> tuple[str, ...]:
@@ -148,7 +156,9 @@ def _cycle_row(cycle: Cycle) -> tuple[str, ...]:
 
 
 def _cycle_fields() -> str:
-    return field_table(CycleRules, _cycle_rules(), leave_out=("name", "cycles", "peck_tolerance_mm"))
+    return field_table(
+        CycleRules, _cycle_rules(), leave_out=("name", "cycles", "peck_tolerance_mm", "above_r_mm", "tap_order")
+    )
 
 
 def _data() -> str:

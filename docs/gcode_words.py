@@ -72,6 +72,8 @@ PHASES: Mapping[str, str] = {
     "stop": "stops and ends: M0 M1 M2 M30 M60",
     "state": "M70 to M73",
 }
+#: Steps that words without a code ask for.
+WORD_PHASES = frozenset({"feed", "speed", "tool", "motion"})
 
 
 def letter_status(letter: str) -> Callable[[Dialect], str]:

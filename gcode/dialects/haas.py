@@ -46,6 +46,7 @@ HAAS = replace(
     name="haas",
     codes=CODES,
     cycles=HAAS_CYCLES,
+    data_kinds={kind: what for kind, what in FANUC.data_kinds.items() if what != "ignored"},
     packed_calls=False,
     dwell={"P": DwellWord(seconds=0.001, pointed=1.0), "X": DwellWord(seconds=1.0, pointed=1.0)},
 )
