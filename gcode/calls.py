@@ -157,7 +157,15 @@ class Library:
                 path = folder / name
                 if path in self._read:
                     return self._read[path]
-                if "/" not in name and path.is_file():
+                if "/" not in name and _is_file(path):
                     self._read[path] = read_program(path)
                     return self._read[path]
         return None
+
+
+def _is_file(path: Path) -> bool:
+    """True for a file; a name that no file can have, or a folder that may not be looked into, holds none."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False

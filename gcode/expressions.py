@@ -26,11 +26,12 @@ __all__ = [
 
 #: Brackets inside each other; no control takes a tenth of it.
 MAX_DEPTH = 60
-_NUMBER = re.compile(r"\d+\.?\d*|\.\d+", re.ASCII)
+_NUMBER = re.compile(r"\d++(?:\.\d*+)?+|\.\d++", re.ASCII)
 _NAME = re.compile(r"[A-Z]+")
 _OPERATOR = re.compile(r"\*\*|[-+*/]|MOD|AND|XOR|OR|EQ|NE|GT|GE|LT|LE")
 
 Function: TypeAlias = Callable[["Scope"], "float | None"]
+Step: TypeAlias = Callable[["float | None", "Scope"], float]
 
 
 class EvaluationError(Exception):
@@ -232,29 +233,43 @@ def _bracket(source: Source, position: int, depth: int) -> tuple[Function, int]:
 def _binary(source: Source, position: int, least: int, depth: int) -> tuple[Function, int]:
     """Precedence climbing over the language's table; all operators bind to the left."""
     left, position = _signed(source, position, depth)
+    steps: list[Step] = []
     while True:
         match = _OPERATOR.match(source.text, position)
         rank = source.language.operators.get(match[0]) if match else None
         if match is None or rank is None or rank[0] < least:
-            return left, position
+            return (_chained(left, tuple(steps)) if steps else left), position
         right, end = _binary(source, match.end(), rank[0] + 1, depth + 1)
-        left = _applied(source, position, match[0], left, right)
+        steps.append(_applied(source, position, match[0], right))
         position = end
 
 
-def _applied(source: Source, position: int, name: str, left: Function, right: Function) -> Function:
+def _chained(left: Function, steps: tuple[Step, ...]) -> Function:
+    """Operators one after another, in a loop: a line holds more of them than calls may be nested."""
+
+    def value(scope: Scope) -> float | None:
+        result = left(scope)
+        for step in steps:
+            result = step(result, scope)
+        return result
+
+    return value
+
+
+def _applied(source: Source, position: int, name: str, right: Function) -> Step:
+    """An operator and what stands on its right, to be applied to what stands on its left."""
     operator, column = source.language.operators[name][1], source.column(position)
     tells_vacant = source.language.vacant and name in source.language.comparisons
 
-    def apply(scope: Scope) -> float:
-        a, b = left(scope), right(scope)
+    def apply(a: float | None, scope: Scope) -> float:
+        b = right(scope)
         if tells_vacant and (a is None or b is None):
             return float((a is b) == (name == "EQ"))
         try:
             return operator(a or 0.0, b or 0.0)
         except MathError as error:
             raise EvaluationError("bad-operation", error.problem, error.expected, column) from None
-        except OverflowError:
+        except (OverflowError, ValueError):
             raise EvaluationError("bad-operation", f"{name} overflows", "a finite number", column) from None
 
     return apply

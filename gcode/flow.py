@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from gcode import oflow
+from gcode.actions import whole_number
 from gcode.blocks import ParsedBlock, Word
 from gcode.calls import CallRequest, StateRequest, macro_arguments
 from gcode.compensated import through
 from gcode.errors import Call, GcodeError, Place
 from gcode.events import Block, Event, Notice, ProgramStop
 from gcode.expressions import Expression
+from gcode.increments import in_increments
 from gcode.level import Level
 from gcode.program import Program, Spot
 from gcode.state import State
@@ -44,22 +46,7 @@ def evaluated(runner: Runner, block: ParsedBlock) -> ParsedBlock:
     call = any(word.letter == "G" and word.value in _MACRO_CALLS for word in block.words)
     words = block if block.plain else block.evaluated(runner.variables.scope(), exact=call)
     assign(runner, block, block.assignments)
-    return _scaled(runner, words)
-
-
-def _scaled(runner: Runner, block: ParsedBlock) -> ParsedBlock:
-    """Numbers without a decimal point as counts of the least input increment, where the machine is set so."""
-    letters = runner.dialect.increment_letters
-    if runner.settings.decimal_point != "increment" or not letters:
-        return block
-    increment = 1.0 / runner.least_increments
-    if any(word.letter == "G" and word.value in (20.0, 21.0) for word in block.words):
-        increment = 0.001 if any(word.letter == "G" and word.value == 21.0 for word in block.words) else 0.0001
-    words = tuple(
-        word._replace(value=word.value * increment) if word.letter in letters and not word.has_point else word
-        for word in block.words
-    )
-    return replace(block, words=words)
+    return in_increments(runner.state, words)
 
 
 def assign(runner: Runner, block: ParsedBlock, assignments: tuple[Assignment, ...]) -> None:
@@ -212,8 +199,8 @@ def call_macro(runner: Runner, block: ParsedBlock, macro: tuple[Word, tuple[Word
     word, words = macro
     if word.value not in {float(code[1:]) for code in runner.dialect.codes if code.startswith("G6")}:
         raise block.error(word, "unknown-code", f"{word.text} is no code of the {runner.dialect.name} dialect")
-    number = next((int(w.value) for w in words if w.letter == "P"), None)
-    count = next((int(w.value) for w in words if w.letter == "L"), 1)
+    number = next((whole_number(block, w) for w in words if w.letter == "P"), None)
+    count = next((whole_number(block, w) for w in words if w.letter == "L"), 1)
     if number is None and block.name is None:
         raise block.error(word, "missing-word", f"{word.text} without P", "P and the number of a program")
     arguments = macro_arguments(block, [w for w in words if w.letter not in "PL"])

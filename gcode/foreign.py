@@ -12,8 +12,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-#: Lines that are looked at.
+#: Lines that are looked at, and characters of each: the marks stand near its beginning.
 MOST_LINES = 400
+MOST_COLUMNS = 256
 #: What the likely marks of one control must add up to; a certain one has it alone.
 PROOF = 2
 
@@ -209,7 +210,8 @@ def recognise(head: str) -> Foreign | None:
     """Finds what other control, or kind of file, a text is for.
 
     Args:
-        head: the beginning of the text; its first `MOST_LINES` lines are looked at.
+        head: the beginning of the text; the first `MOST_COLUMNS` characters of its first `MOST_LINES` lines are
+            looked at.
 
     Returns:
         The first mark of what it was recognised as, None for a text that may be a program of the dialects here.
@@ -217,7 +219,7 @@ def recognise(head: str) -> Foreign | None:
     found: dict[str, tuple[int, Foreign]] = {}
     seen: set[Rule] = set()
     for number, line in enumerate(head.split("\n")[:MOST_LINES], start=1):
-        for rule, match in _marks(line, number):
+        for rule, match in _marks(line[:MOST_COLUMNS], number):
             if rule in seen:
                 continue
             seen.add(rule)

@@ -16,15 +16,18 @@ MAX_LINE = 4096
 #: Largest number of a word, in the program's units: far beyond any machine, far below where doubles lose a nanometre.
 MAX_VALUE = 1e9
 
-#: A block of words alone, with comments behind it or without: what most lines are.
-_PLAIN = re.compile(r"(?:[ \t]*[A-Za-z][ \t]*[+-]?(?:\d+\.?\d*|\.\d+))*[ \t]*", re.ASCII)
-_PLAIN_WORD = re.compile(r"[ \t]*(([A-Za-z])[ \t]*([+-]?(?:\d+\.?\d*|\.\d+)))", re.ASCII)
+#: Every quantifier is possessive: nothing is tried twice, so that the time grows with the text and not faster.
+_PLAIN_NUMBER = r"[+-]?+(?:\d++(?:\.\d*+)?+|\.\d++)"
+#: A block of words alone: what most lines are.
+_PLAIN = re.compile(rf"(?:[ \t]*+[A-Za-z][ \t]*+{_PLAIN_NUMBER})*+[ \t]*+", re.ASCII)
+_PLAIN_WORD = re.compile(rf"[ \t]*+(([A-Za-z])[ \t]*+({_PLAIN_NUMBER}))", re.ASCII)
 _CONTROL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f]")
 _NUMBER = re.compile(r"[+-]*[0-9.]*")
-_GOOD_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)", re.ASCII)
+_GOOD_NUMBER = re.compile(_PLAIN_NUMBER, re.ASCII)
 _KEYWORD = re.compile(r"IF|THEN|ELSE|WHILE|DO|END|GOTO|SUB|CALL|REPEAT|RETURN|BREAK|CONTINUE|POPEN|PCLOS|DPRNT|SETVN")
 #: Signs that LinuxCNC uses as letters: of polar words, and of a spindle's number.
 _SIGN_LETTERS = frozenset("@^$")
+_DIGITS = frozenset("0123456789")
 _CONTROL_NAMES = {"\x00": "NUL", "\r": "carriage return", "\x1a": "substitute (Ctrl-Z)"}
 
 
@@ -110,7 +113,7 @@ def _segments(place: Place, dialect: Dialect) -> list[_Segment]:
             if segments[-1].comments:
                 break
         elif character not in " \t":
-            current.characters.append(character.upper())
+            current.characters.append(character.upper() if character.isascii() else character)
             current.columns.append(position + 1)
         position += 1
     return segments
@@ -168,10 +171,10 @@ def _head(place: Place, source: Source, words: list[Word], *, block_delete: bool
         if source.at(position, "//"):
             break
         if source.at(position, "/"):
-            position += 2 if source.text[position + 1 : position + 2].isdigit() else 1
+            position += 2 if source.text[position + 1 : position + 2] in _DIGITS else 1
             if block_delete:
                 return position, True
-        elif source.at(position, "N") and source.text[position + 1 : position + 2].isdigit() and not words:
+        elif source.at(position, "N") and source.text[position + 1 : position + 2] in _DIGITS and not words:
             word, position = _word(place, source, position)
             words.append(word)
         else:

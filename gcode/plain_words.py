@@ -62,11 +62,12 @@ class WordArrays:
 def plain_end(buffer: bytes, offset: int, max_lines: int) -> int:
     """Where the plain lines that begin at `offset` end: behind the line end of the last of at most `max_lines`.
 
-    A last line without a line end is not one of them.
+    A last line without a line end is not one of them. So that few expressions are ever made, the number is the power
+    of two in `max_lines`: where there are more lines, those behind are found by a further call.
     """
     if max_lines < 1:
         return offset
-    match = _lines(max_lines).match(buffer, offset, min(len(buffer), offset + MAX_BYTES))
+    match = _lines(1 << max_lines.bit_length() - 1).match(buffer, offset, min(len(buffer), offset + MAX_BYTES))
     return offset if match is None else buffer.rfind(b"\n", offset, match.end()) + 1
 
 

@@ -22,12 +22,12 @@ MAX_BYTES = 1 << 30
 #: Length of the part by which the kind of control is told.
 HEAD_BYTES = 1 << 15
 
-_LABEL = re.compile(rb"^[ \t]*(?:/\d?[ \t]*)?N[ \t]*0*(\d+)(?![\d.])", re.IGNORECASE | re.MULTILINE)
+_LABEL = re.compile(rb"^[ \t]*(?:/\d?[ \t]*)?N[ \t]*(\d{1,40}+)(?![\d.])", re.IGNORECASE | re.MULTILINE)
 _NUMBERED = re.compile(
-    rb"^[ \t]*(?:/\d?[ \t]*)?[O:][ \t]*0*(\d+)[ \t]*(?=[\r\n;(%/]|\Z|[A-NP-Za-np-z])", re.IGNORECASE | re.MULTILINE
+    rb"^[ \t]*(?:/\d?[ \t]*)?[O:][ \t]*(\d{1,40}+)[ \t]*(?=[\r\n;(%/]|\Z|[A-NP-Za-np-z])", re.IGNORECASE | re.MULTILINE
 )
 _O_LINE = re.compile(
-    rb"^[ \t]*(?:/\d?[ \t]*)?(?:N[ \t]*\d+[ \t]*)?O[ \t]*(<[^>\r\n]*>|\d+)[ \t]*"
+    rb"^[ \t]*(?:/\d?[ \t]*)?(?:N[ \t]*\d+[ \t]*)?O[ \t]*(<[^>\r\n]{0,4096}>|\d{1,4096}+)[ \t]*"
     rb"(endsub|endif|endwhile|endrepeat|elseif|else|sub|call|return|if|while|do|break|continue|repeat)(?![A-Za-z])",
     re.IGNORECASE | re.MULTILINE,
 )
@@ -157,19 +157,13 @@ class Program:
     def loops(self) -> dict[int, Spot]:
         """The END of each DO, by the offset of the DO's line; a DO without one is missing."""
         pairs: dict[int, Spot] = {}
-        for index, (spot, word, label) in enumerate(self._loop_words):
-            if word != "DO":
-                continue
-            depth, limit = 0, self.section(spot.offset)[1]
-            for other, kind, number in self._loop_words[index + 1 :]:
-                if other.offset >= limit:
-                    break
-                if number != label:
-                    continue
-                depth += 1 if kind == "DO" else -1
-                if depth < 0:
-                    pairs[spot.offset] = other
-                    break
+        waiting: dict[tuple[int, int], list[int]] = {}
+        for spot, word, label in self._loop_words:
+            open_loops = waiting.setdefault((self.section(spot.offset)[0], label), [])
+            if word == "DO":
+                open_loops.append(spot.offset)
+            elif open_loops:
+                pairs[open_loops.pop()] = spot
         return pairs
 
     @cached_property
@@ -179,7 +173,7 @@ class Program:
         spot = BEGINNING
         for match in _O_LINE.finditer(self.text):
             spot = self.spot_of(self._line_start(match.start()), spot)
-            found.append(OLine(spot, canonical_label(match[1].decode("latin-1")), match[2].decode().lower()))
+            found.append(OLine(spot, canonical_label(_decoded(match[1])), match[2].decode().lower()))
         return found
 
     @cached_property
@@ -211,7 +205,7 @@ def canonical_label(text: str) -> str:
     """Label of an O-word as it is compared: a name in lower case without blanks, or a number."""
     name = text.strip().removeprefix("<").removesuffix(">")
     name = "".join(name.split()).lower()
-    return str(int(name)) if name.isdigit() else name
+    return name.lstrip("0") or "0" if name.isascii() and name.isdigit() else name
 
 
 def _decoded(line: bytes) -> str:

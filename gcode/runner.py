@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from gcode import flow
 from gcode.blocks import ParsedBlock
-from gcode.bulk import MAX_LINES, PlainBatch, PlainStart, plain_run
+from gcode.bulk import MAX_LINES, PlainBatch, PlainRun, PlainStart, plain_run
 from gcode.calls import CallRequest, Library, StateRequest
 from gcode.dialects import Dialect
 from gcode.errors import GcodeError, Place
@@ -269,6 +269,7 @@ class Runner:
         self._count_block(line, run.lines)
         level.spot = Spot(run.offset, line + run.lines)
         level.fresh = False
+        self.place = self._last_place(run)
         motion = "G0" if run.rapid_after else "G1"
         self.state = replace(state, position_mm=run.position_mm, started=True)
         if motion != state.modes.motion or run.feed_after != feed:
@@ -283,6 +284,13 @@ class Runner:
             calls=level.calls,
             extra=state.extra,
         )
+
+    def _last_place(self, run: PlainRun) -> Place:
+        """Place of the last line of a run that ends where the level stands."""
+        level = self.level
+        begin = max(level.program.text.rfind(b"\n", 0, run.offset - 1) + 1, run.begin)
+        text, _ = level.program.line_at(begin)
+        return Place(file=level.program.file, line=level.spot.line - 1, text=text, calls=level.calls)
 
 
 def block_is_plain(blocks: tuple[ParsedBlock, ...]) -> bool:

@@ -19,7 +19,7 @@ MM_PER_UNIT: Mapping[str, float] = MappingProxyType({"mm": 1.0, "inch": 25.4})
 #: No table that people keep is larger.
 LARGEST_BYTES = 16 * 2**20
 
-NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+NUMBER = re.compile(r"[+-]?(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d+)?")
 _TOKEN = re.compile(r"\S+")
 
 
