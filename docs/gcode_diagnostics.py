@@ -141,7 +141,7 @@ ERRORS: Mapping[str, str] = {
 #: Meaning of each `Notice.code`.
 NOTICES: Mapping[str, str] = {
     "block-deleted": "block delete is on: the block was left out",
-    "compensation-look-ahead": "more than two blocks without motion follow: the corner is not compensated (FANUC, Haas)",
+    "compensation-look-ahead": "over two blocks without motion follow: the corner is not compensated (FANUC, Haas)",
     "data-entry": "a block between G10 L3 or L50 and G11 is data, and is not executed",
     "leader": "lines before the first % are a leader, and are not executed",
     "no-motion": "a word that was understood and moves nothing",

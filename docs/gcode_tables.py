@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
@@ -196,7 +197,7 @@ def _meanings(meanings: Mapping[str, str]) -> Callable[[], str]:
 
 
 def _controls() -> str:
-    return ", ".join(dict.fromkeys(rule.control for rule in RULES)) + ".\n"
+    return textwrap.fill(", ".join(dict.fromkeys(rule.control for rule in RULES)) + ".", 130) + "\n"
 
 
 #: Text of every generated part of the page, by the name in its marker.
