@@ -87,7 +87,7 @@ def test_a_drilling_cycle_as_a_modal_macro(level: str, height: float, strokes) -
     """FANUC 30i user's manual, "Modal call (G66)", sample: a drilling cycle is made by a macro that is called after
     every positioning and that restores modes; its own motions call nothing."""
     text = f"O1\n{level} G0 X0 Y0 Z10.\nG66 P9110 Z-5. R2. F500\nG90 X20.\nY30.\nG67\nX50.\nM30\n{CYCLE}"
-    hole = [f"R {{}} 2", "F {} -5", f"R {{}} {height:g}"]
+    hole = ["R {} 2", "F {} -5", f"R {{}} {height:g}"]
     assert strokes(text) == [
         "R 0 0 10",
         "R 20 0 10",
