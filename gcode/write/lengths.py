@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+from gcode.codes import Status
 from gcode.events import Motion
 from gcode.settings import ToolOffset
 from gcode.write.control import Control, LengthOffset
@@ -49,15 +50,16 @@ def _check_gap(control: Control, event: Motion, old: LengthOffset, new: LengthOf
 
 def _words(control: Control, event: Motion, new: LengthOffset) -> Iterator[str]:
     dialect = control.options.dialect
+    dynamic = dialect.codes.get("G43.1")
     if new == LengthOffset():
         yield "G49"
     elif new.number is not None and "G43" in dialect.codes:
         yield _by_number(control, event, new.number, new.length_mm)
         yield f"H{new.number}"
-    elif "G43.1" in dialect.codes:
-        yield "G43.1"
+    elif dynamic is not None and dynamic.status is Status.EXECUTED:
+        yield dynamic.code
         for axis, length in zip("XYZ", new.vector_mm, strict=True):
-            if axis in dialect.codes["G43.1"].letters:
+            if axis in dynamic.letters:
                 yield f"{axis}{plain(length / control.grid.unit_mm, _LENGTH_DECIMALS)}"
     else:
         problem = f"a length offset of {new.length_mm:g} mm without a number"

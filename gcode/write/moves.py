@@ -28,25 +28,26 @@ def motion(control: Control, event: Motion, stream: Stream) -> Iterator[str]:
     _check(control, event)
     yield from ready(control, event, event.state)
     own, beside = set_length(control, event)
-    tapping, rapid = isinstance(event, LinearMotion) and event.tapping, isinstance(event, LinearMotion) and event.rapid
-    if beside and (tapping or isinstance(event, ArcMotion)):
-        own, beside = beside, []
-    if own:
-        yield control.line(*own)
     if control.at is None:
         control.at = control.grid.point(event.start_mm)
-    if isinstance(event, LinearMotion) and tapping:
+    if isinstance(event, LinearMotion) and event.tapping:
+        yield from (control.line(*words) for words in (own, beside) if words)
         yield from tap_blocks(control, event, tap_of(control, event, stream), feed_word(control, event))
         return
+    if own:
+        yield control.line(*own)
     for stroke in _strokes(control, event):
-        yield control.line(*beside, *_words(control, event, stroke, rapid=rapid))
+        yield control.line(*beside, *_words(control, event, stroke))
         control.at, control.unsure, beside = stroke.end, False, []
     control.at_mm = event.end_mm
 
 
-def feed_word(control: Control, event: Motion) -> str:
-    """F for a motion's feed."""
-    return f"F{plain(event.feed_mm_min / control.grid.unit_mm, _FEED_DECIMALS[control.options.units])}"
+def feed_word(control: Control, event: Motion, stroke: Stroke | None = None) -> str:
+    """F for a motion's feed; for a helix that of its arc, where that is what the control takes."""
+    feed = event.feed_mm_min / control.grid.unit_mm
+    if isinstance(stroke, Circle) and control.options.dialect.helix_feed_along_arc:
+        feed /= stroke.climb
+    return f"F{plain(feed, _FEED_DECIMALS[control.options.units])}"
 
 
 def _check(control: Control, event: Motion) -> None:
@@ -65,13 +66,18 @@ def _check(control: Control, event: Motion) -> None:
 
 
 def _strokes(control: Control, event: Motion) -> Iterator[Stroke]:
-    if isinstance(event, ArcMotion):
-        assert control.at is not None
-        return arc_strokes(event, control.at, control.grid, control.options.dialect)
-    return iter((Line(control.grid.point(event.end_mm)),))
+    """The strokes of a motion. An arc whose start no word has named yet is led in by a straight feed to it."""
+    if isinstance(event, LinearMotion):
+        yield Line(control.grid.point(event.end_mm))
+        return
+    assert control.at is not None
+    if control.unsure:
+        yield Line(control.at)
+    yield from arc_strokes(event, control.at, control.grid, control.options.dialect)
 
 
-def _words(control: Control, event: Motion, stroke: Stroke, *, rapid: bool) -> Iterator[str]:
+def _words(control: Control, event: Motion, stroke: Stroke) -> Iterator[str]:
+    rapid = isinstance(event, LinearMotion) and event.rapid
     incremental = control.options.distance == "incremental" and not control.unsure
     yield from control.modal("distance", "G91" if incremental else "G90")
     if isinstance(stroke, Circle):
@@ -81,7 +87,7 @@ def _words(control: Control, event: Motion, stroke: Stroke, *, rapid: bool) -> I
         yield from control.modal("motion", "G0" if rapid else "G1")
         yield from _axes(control, stroke.end, "", incremental=incremental)
     if not rapid:
-        yield from control.modal("F", feed_word(control, event))
+        yield from control.modal("F", feed_word(control, event, stroke))
 
 
 def _circle(control: Control, stroke: Circle, *, incremental: bool) -> Iterator[str]:

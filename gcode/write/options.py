@@ -10,7 +10,7 @@ from typing import Literal
 
 from gcode.dialects import FANUC, Dialect
 from gcode.events import Point
-from gcode.settings import ToolOffset
+from gcode.settings import ALL_OFFSETS, ToolOffset
 from gcode.write.numbers import MM_PER_INCH, Grid
 from gcode.write.rules import RULES, OutputRules
 
@@ -41,7 +41,7 @@ class WriteOptions:
         percent: whether the program stands between percent signs; None for what is usual.
         header: comments at the program's beginning, a line each; printable ASCII without parentheses.
         safe_start: whether a block at the beginning sets known modes (G17 G40 G49 G80 G90 G94).
-        wcs: work offset to call at the beginning, None for none.
+        wcs: work offset to call at the beginning, e.g. ``G54`` or ``G54.1 P3``, None for none.
         shift_mm: work zero in machine coordinates, which is subtracted from all points.
         tools: tool offset table of the control that will run the program. Where it is given, each G43 is checked
             against it, and G44 is written where the stream subtracts a length. Without it every H is written as G43.
@@ -96,8 +96,8 @@ class WriteOptions:
         _within("program_number", self.program_number, 1, 10**rules.program_digits - 1)
         if self.percent and rules.percent is None:
             raise ValueError(f"percent: {name} knows no percent signs")
-        offsets = [code for code, rule in self.dialect.codes.items() if "work-offset" in rule.groups and not rule.needs]
-        if self.wcs is not None and self.wcs not in offsets:
+        offsets = [code for code, rule in self.dialect.codes.items() if "work-offset" in rule.groups]
+        if self.wcs is not None and (self.wcs not in ALL_OFFSETS or self.wcs.partition(" ")[0] not in offsets):
             raise ValueError(f"wcs must be one of {', '.join(offsets)}, got {self.wcs!r}")
 
     @property

@@ -28,10 +28,11 @@ def program_lines(events: Iterable[Event], options: WriteOptions | None = None) 
 
     The program's motions are the events' motions with each point rounded to the decimals that are written, so no
     error adds up, incremental programs included. An arc that rounding would make another arc, or that the control
-    would refuse, becomes chords within one count of the last decimal. Every feed is one per minute (G94). Cutter
-    compensation, work offsets, subprograms and cycles are already in the motions and are not written again, but for
-    taps. Tool, spindle and length offset are taken from the events that change them and, where there are none, from
-    the motions' states. `Block` and `Notice` say nothing.
+    would refuse, becomes chords within one count of the last decimal. An arc that is the first motion, or the first
+    after a change of tool or length offset, is led in by a straight feed to its start. Every feed is one per minute
+    (G94). Cutter compensation, work offsets, subprograms and cycles are already in the motions and are not written
+    again, but for taps. Tool, spindle and length offset are taken from the events that change them and, where there
+    are none, from the motions' states. `Block` and `Notice` say nothing.
 
     Args:
         events: what `interpret` yields, or motions that one has made; each begins where the last one ends.

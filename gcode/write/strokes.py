@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
+from gcode.arcs import arc_lengths
 from gcode.dialects import Dialect
 from gcode.events import PLANE_AXES, ArcMotion, Point
 from gcode.path import points_mm
@@ -37,6 +38,7 @@ class Circle:
         turns: as those of `ArcMotion`.
         centre: counts from its start to its centre along the plane's first and second axis.
         radius: radius in counts, negative for more than half a turn, where it says as much as the centre; else None.
+        climb: length of the stroke over that of its arc in the plane: 1 for a circle, more for a helix.
     """
 
     end: Counts
@@ -44,6 +46,7 @@ class Circle:
     turns: int
     centre: tuple[int, int]
     radius: int | None
+    climb: float
 
 
 Stroke: TypeAlias = Line | Circle
@@ -100,12 +103,14 @@ def _circle(arc: ArcMotion, start: Counts, grid: Grid, dialect: Dialect) -> Circ
     rounded = replace(arc, start_mm=_floats(start), end_mm=_floats(end), centre_mm=_floats(centre))
     if abs(rounded.sweep_rad - arc.sweep_rad) * max(radii) > MOST_ASTRAY:
         return None
+    in_plane, path = arc_lengths(rounded)
     return Circle(
         end=end,
         plane=arc.plane,
         turns=arc.turns,
         centre=(centre[i] - start[i], centre[j] - start[j]),
         radius=_radius(rounded, sum(radii) / 2.0),
+        climb=path / in_plane,
     )
 
 

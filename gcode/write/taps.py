@@ -92,7 +92,9 @@ def _cycle(control: Control, event: LinearMotion, tap: Tap, feed: str) -> Iterat
     if any(start[axis] != end[axis] for axis in range(3) if axis != k):
         expected = f"one along {'XYZ'[k]}, the normal of G{event.state.plane}"
         raise _error(control, event, "a tap that is not square to its plane", expected)
-    if tap.rigid:
+    cycles = control.options.dialect.cycles
+    always_rigid = cycles is not None and cycles.always_rigid
+    if tap.rigid and not always_rigid:
         yield control.line("M29", control.words["S"])
     words = [*control.modal("plane", f"G{event.state.plane}"), "G99", _CYCLES[control.direction]]
     words += [f"{axis}{control.grid.text(count)}" for axis, count in zip("XYZ", end, strict=True)]
@@ -102,7 +104,7 @@ def _cycle(control: Control, event: LinearMotion, tap: Tap, feed: str) -> Iterat
     control.words["F"] = feed
     yield control.line(*control.modal("distance", "G90"), *words, feed)
     yield control.line("G80")
-    if tap.rigid:
+    if tap.rigid or always_rigid:
         control.direction = 0
 
 
