@@ -97,8 +97,16 @@ def _arc_motion(state: State, command: Command, ends: _Ends, centre: Point) -> R
         feed_mm_min=0.0,
         extra=extra,
     )
-    event = replace(event, feed_mm_min=feed_mm_min(state, command, _length(event)))
+    event = replace(event, feed_mm_min=_path_feed(state, command, event))
     return moved_to(settled(state, command), end, extra), (event,)
+
+
+def _path_feed(state: State, command: Command, event: ArcMotion) -> float:
+    """Feed along the path, which is longer than the arc in the plane that F may be for."""
+    arc, path = arc_lengths(event)
+    feed = feed_mm_min(state, command, path)
+    along_arc = state.control.dialect.helix_feed_along_arc and state.machine.feed_mode != "inverse-time"
+    return feed * path / arc if along_arc else feed
 
 
 def _whole_turns(command: Command) -> int:
@@ -112,12 +120,13 @@ def _whole_turns(command: Command) -> int:
     return turns
 
 
-def _length(event: ArcMotion) -> float:
-    """Length of an arc or helix, mm, by its mean radius."""
+def arc_lengths(event: ArcMotion) -> tuple[float, float]:
+    """Lengths of an arc in its plane and of the helix over it, mm, by its mean radius."""
     i, j, k = PLANE_AXES[event.plane]
     start, end, centre = event.start_mm, event.end_mm, event.centre_mm
     radius = math.hypot(start[i] - centre[i], start[j] - centre[j]) + math.hypot(end[i] - centre[i], end[j] - centre[j])
-    return math.hypot(event.sweep_rad * radius / 2.0, end[k] - start[k])
+    arc = abs(event.sweep_rad) * radius / 2.0
+    return arc, math.hypot(arc, end[k] - start[k])
 
 
 def _closed(state: State, ends: _Ends) -> _Ends:

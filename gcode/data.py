@@ -112,7 +112,7 @@ def _offset_name(state: State, command: Command, *, additional: bool) -> str:
         raise command.block.error(use, "missing-word", f"{use.text} without P", "P and the number of a work offset")
     number = whole_number(command.block, word)
     if additional:
-        return additional_offset(command, word)
+        return additional_offset(state, command, word)
     if number == 0:
         return state.machine.wcs if state.control.dialect.shift_is_rotated else "external"
     count = 9 if "G59.1" in state.control.dialect.codes else 6

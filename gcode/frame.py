@@ -102,6 +102,10 @@ class Turning:
     inverse: Matrix
     centre_mm: Point
 
+    def of(self, point: Point) -> Point:
+        """Where it takes a point."""
+        return plus(self.centre_mm, _times(self.matrix, difference(point, self.centre_mm)))
+
 
 def rotation(plane: int, angle_deg: float, centre_mm: Point = ORIGIN) -> Turning:
     """Turns a plane about a point, counter-clockwise seen from the plane's positive normal."""
@@ -154,8 +158,6 @@ def frame_of(
     matrix, inverse, offset = _IDENTITY, _IDENTITY, shift_mm
     for turning in turnings:
         matrix, inverse = _product(turning.matrix, matrix), _product(inverse, turning.inverse)
-        relative = tuple(o - c for o, c in zip(offset, turning.centre_mm, strict=True))
-        turned = _times(turning.matrix, (relative[0], relative[1], relative[2]))
-        offset = tuple(c + t for c, t in zip(turning.centre_mm, turned, strict=True))  # type: ignore[assignment]
+        offset = turning.of(offset)
     x, y, z = (zero + o for zero, o in zip(zero_mm, offset, strict=True))
     return Frame(zero_mm=(x, y, z), matrix=matrix, inverse=inverse, extra=extra)

@@ -10,9 +10,11 @@ from gcode.blocks import Word
 from gcode.events import Event, Extra, Notice, Point
 from gcode.frame import ORIGIN, difference, plus
 from gcode.modal import Command
-from gcode.settings import ADDITIONAL_OFFSETS, ToolOffset
+from gcode.settings import ToolOffset
 from gcode.state import AXES, EXTRA_AXES, State, WorkOffset
 
+#: Additional work offsets that have codes of their own.
+_SAME_OFFSETS: Mapping[str, str] = {f"G{109 + n}": f"G54.1 P{n}" for n in range(1, 21)}
 _LENGTH_SIGN: Mapping[str, float] = {"G43": 1.0, "G44": -1.0, "G49": 0.0, "G43.1": 1.0, "G43.2": 1.0}
 
 
@@ -25,11 +27,13 @@ def known_offsets(state: State) -> str:
 def set_work_offset(state: State, command: Command) -> Result:
     """G54 to G59 and the further ones of a dialect."""
     use = command.of_phase("work_offset")[0]
-    name = use.rule.code
+    name = _SAME_OFFSETS.get(use.rule.code, use.rule.code)
     word = command.words.get("P")
     if use.rule.letters and word is not None:
-        name = additional_offset(command, word)
-    elif name in ("G54.1", "G154"):
+        name = additional_offset(state, command, word)
+    elif name == "G54.1":
+        name = "G54.1 P1"
+    elif name == "G154":
         raise command.block.error(use.word, "missing-word", f"{use.word.text} without P", "P and a number")
     if name not in state.setup.offsets:
         problem = f"work offset {name} is not given"
@@ -38,15 +42,15 @@ def set_work_offset(state: State, command: Command) -> Result:
     return state.with_machine(wcs=name).reframed(), ()
 
 
-def additional_offset(command: Command, word: Word) -> str:
+def additional_offset(state: State, command: Command, word: Word) -> str:
     """Name of the additional work offset that a P word counts.
 
     Raises:
         GcodeError: where there is none of that number.
     """
-    number = whole_number(command.block, word)
-    if not 1 <= number <= ADDITIONAL_OFFSETS:
-        expected = f"P1 to P{ADDITIONAL_OFFSETS}"
+    number, most = whole_number(command.block, word), state.control.dialect.additional_offsets
+    if not 1 <= number <= most:
+        expected = f"P1 to P{most}"
         raise command.block.error(word, "bad-value", f"{word.text} is no additional work offset", expected)
     return f"G54.1 P{number}"
 
@@ -56,7 +60,7 @@ def set_length(state: State, command: Command) -> Result:
     uses = command.of_phase("length")
     code = uses[0].rule.code if uses else state.modes.length_code
     if code == "G43.1":
-        return _with_length(state, code, None, axis_words(state, command, state.tool_offset_mm)), ()
+        return with_length(state, code, None, axis_words(state, command, state.tool_offset_mm)), ()
     word = command.words.get("H")
     number = whole_number(command.block, word) if word else state.modes.length_number
     offset = ORIGIN
@@ -71,7 +75,7 @@ def set_length(state: State, command: Command) -> Result:
         both = state.control.dialect.length_moves_all_axes
         sign = _LENGTH_SIGN[code]
         offset = (row.x_mm if both else 0.0, row.y_mm if both else 0.0, sign * row.whole_length_mm)
-    return _with_length(state, code, number, offset), notices
+    return with_length(state, code, number, offset), notices
 
 
 def _unknown_table(state: State, command: Command, number: int | None) -> tuple[Event, ...]:
@@ -102,7 +106,7 @@ def axis_words(state: State, command: Command, otherwise: Point) -> Point:
     return (x, y, z)
 
 
-def _with_length(state: State, code: str, number: int | None, offset_mm: Point) -> State:
+def with_length(state: State, code: str, number: int | None, offset_mm: Point) -> State:
     """The state under another tool offset: the gauge point stays, so the controlled point changes."""
     gauge, change = state.gauge_mm, offset_mm[2] - state.machine.length_offset_mm
     unmoved = state.modes.unmoved_length_mm + change if state.control.dialect.incremental_adds_length else 0.0
@@ -156,10 +160,12 @@ def _local(state: State, command: Command) -> Result:
 
 
 def _preset(state: State, command: Command) -> Result:
-    """G92: where the tool is gets the given coordinates."""
+    """G92: where the tool is gets the given coordinates. Where G52 is a shift of its own it ends in those axes."""
     if not any(axis in command.words for axis in AXES + EXTRA_AXES):
         return _without_axes(state, command)
     setup, dialect = state.setup, state.control.dialect
+    if not dialect.shift_is_rotated:
+        state = state.with_setup(local_mm=_unnamed(command, setup.local_mm))
     wanted = axis_words(state, command, state.program_mm)
     if dialect.shift_is_rotated:
         inside = state.with_setup(shift=WorkOffset(), shift_on=False).program_mm
@@ -187,8 +193,17 @@ def _without_axes(state: State, command: Command) -> Result:
     raise command.block.error(use.word, "missing-axis", f"{use.word.text} names no axis", "at least one of X, Y, Z")
 
 
-def _reset_shift(state: State, _command: Command) -> Result:
-    """G92.1: no shift, and none kept."""
+def _unnamed(command: Command, point: Point) -> Point:
+    """`point` with 0 for the axes that the block names."""
+    x, y, z = (0.0 if axis in command.words else old for axis, old in zip(AXES, point, strict=True))
+    return (x, y, z)
+
+
+def _reset_shift(state: State, command: Command) -> Result:
+    """G92.1: no shift, and none kept; with axis words for those axes."""
+    if any(axis in command.words for axis in AXES):
+        kept = replace(state.setup.shift, zero_mm=_unnamed(command, state.setup.shift.zero_mm))
+        return state.with_setup(shift=kept, local_mm=_unnamed(command, state.setup.local_mm)), ()
     return state.with_setup(shift=WorkOffset(), local_mm=ORIGIN, shift_on=True), ()
 
 

@@ -8,9 +8,9 @@ from types import MappingProxyType
 from gcode.actions import Action, Result, whole_number
 from gcode.blocks import Word
 from gcode.events import NO_EXTRA, Extra, Point
-from gcode.frame import SAME_PLACE_MM
+from gcode.frame import ORIGIN, SAME_PLACE_MM
 from gcode.modal import Command
-from gcode.offsets import to_extra
+from gcode.offsets import to_extra, with_length
 from gcode.state import AXES, EXTRA_AXES, State
 from gcode.straight import straight
 from gcode.targets import extra_end, programmed_end, settled
@@ -43,10 +43,12 @@ def _return(state: State, command: Command) -> Result:
     named = _named(state, command)
     first = programmed_end(state, command, adds_length=False)
     via, to_via = straight(state, command, first, rapid=True, extra=extra_end(state, command))
-    via = via.with_modes(via_mm=first)
+    via = via.with_modes(via_mm=_only(AXES, named, first, state.modes.via_mm or first))
     point, far = _reference_point(state, command)
     extra = to_extra(_only(EXTRA_AXES, named, far, via.extra))
     there, to_home = straight(via, command, _home(via, point, named), rapid=True, extra=extra)
+    if there.control.dialect.reference_cancels_length:
+        there = with_length(there, "G49", None, ORIGIN)
     return settled(there, command), to_via + to_home
 
 

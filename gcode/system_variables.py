@@ -63,20 +63,14 @@ _LETTERS: Mapping[int, Callable[[State], float | None]] = {
     120: lambda s: s.modes.next_tool if s.modes.next_tool is not None else s.machine.tool,
     130: lambda s: float(s.machine.wcs.split("P")[1]) if " " in s.machine.wcs else 0.0,
 }
-#: FANUC's columns of the tool offset table, by the first number of 400 (and of 200 in the older numbering).
-_TOOL_COLUMNS: Mapping[int, str] = {
-    10000: "length_wear_mm",
-    11000: "length_mm",
-    12000: "radius_wear_mm",
-    13000: "radius_mm",
-}
-_OLD_TOOL_COLUMNS: Mapping[int, str] = {2000: "length_wear_mm", 2200: "length_mm"}
 #: Work offsets: first number, step and name of the n-th from 0.
 _FANUC_OFFSETS: tuple[tuple[int, int, Callable[[int], str]], ...] = (
     (5221, 6, lambda n: f"G{54 + n}"),
     (7001, 48, lambda n: f"G54.1 P{n + 1}"),
     (14001, 300, lambda n: f"G54.1 P{n + 1}"),
 )
+#: Fields of `Setup` that every work offset has in common.
+_COMMON_SHIFTS: Mapping[str, str] = {"external": "external_mm", "local": "local_mm"}
 #: LinuxCNC's parameters are #1 to this less 1; one of them, 1 at the start, turns its debug messages on.
 _PARAMETERS, _DEBUG_OUTPUT = 5602, 5599
 _OFFSET_PARAMETERS = range(5161, 5391)
@@ -130,13 +124,13 @@ class SystemVariables:
         position = self._fanuc_position(index)
         if position is not None:
             return position / unit
-        place = _offset_place(index)
+        place = _offset_place(state, index)
         if place is not None:
             name, axis = place
-            if name == "external":
-                return state.setup.external_mm[axis] / unit
+            if name in _COMMON_SHIFTS:
+                return float(getattr(state.setup, _COMMON_SHIFTS[name])[axis]) / unit
             return state.setup.offsets.get(name, WorkOffset()).zero_mm[axis] / unit
-        column = _tool_column(index)
+        column = _tool_column(state, index)
         if column is not None:
             row = state.setup.tools.get(column[1], ToolOffset())
             return float(getattr(row, column[0])) / unit
@@ -157,7 +151,7 @@ class SystemVariables:
 
     def _write_fanuc(self, index: int, value: float | None) -> None:
         if index == 3000:
-            number = 3000 + int(value or 0.0)
+            number = self._state.control.dialect.first_alarm + int(value or 0.0)
             raise EvaluationError("alarm", f"the program raises alarm {number}: {self._message()}")
         if index == 3006:
             self._runner.pending.append(
@@ -178,7 +172,7 @@ class SystemVariables:
 
     def _write_offset(self, index: int, value: float) -> bool:
         state, unit = self._state, self._state.modes.unit_mm
-        place, column = _offset_place(index), _tool_column(index)
+        place, column = _offset_place(state, index), _tool_column(state, index)
         if place is not None:
             self._runner.state = _with_zero(state, place[0], place[1], value * unit)
             return True
@@ -279,10 +273,10 @@ def _unknown(index: int, reason: str) -> EvaluationError:
     return EvaluationError("unknown-variable", f"#{index} is {reason}", "a variable that is there")
 
 
-def _offset_place(index: int) -> tuple[str, int] | None:
-    """The work offset and axis of a FANUC variable."""
+def _offset_place(state: State, index: int) -> tuple[str, int] | None:
+    """The work offset and axis of a FANUC or Haas variable."""
     if 5201 <= index <= 5203:
-        return "external", index - 5201
+        return state.control.dialect.common_shift_variables, index - 5201
     for first, count, name in _FANUC_OFFSETS:
         number, axis = divmod(index - first, 20)
         if 0 <= number < count and axis < 3:
@@ -290,14 +284,11 @@ def _offset_place(index: int) -> tuple[str, int] | None:
     return None
 
 
-def _tool_column(index: int) -> tuple[str, int] | None:
-    """The column and row of the tool offset table of a FANUC variable."""
-    for first, name in _TOOL_COLUMNS.items():
-        if first < index <= first + 400:
-            return name, index - first
-    for first, name in _OLD_TOOL_COLUMNS.items():
-        if first < index <= first + 200:
-            return name, index - first
+def _tool_column(state: State, index: int) -> tuple[str, int] | None:
+    """The column and row of the tool offset table of a FANUC or Haas variable."""
+    for first, count, name in state.control.dialect.tool_variables:
+        if first <= index < first + count:
+            return name, index - first + 1
     return None
 
 
@@ -308,8 +299,9 @@ def _changed(point: tuple[float, float, float], axis: int, value: float) -> tupl
 
 
 def _with_zero(state: State, name: str, axis: int, value_mm: float) -> State:
-    if name == "external":
-        return state.with_setup(external_mm=_changed(state.setup.external_mm, axis, value_mm))
+    if name in _COMMON_SHIFTS:
+        field = _COMMON_SHIFTS[name]
+        return state.with_setup(**{field: _changed(getattr(state.setup, field), axis, value_mm)})
     old = state.setup.offsets.get(name, WorkOffset())
     new = replace(old, zero_mm=_changed(old.zero_mm, axis, value_mm))
     return state.with_setup(offsets=MappingProxyType({**state.setup.offsets, name: new}))

@@ -9,7 +9,7 @@ from gcode.actions import Action, Result
 from gcode.events import PLANE_AXES, Point
 from gcode.frame import Turning, rotation, scaling
 from gcode.modal import Command, Use
-from gcode.state import AXES, State
+from gcode.state import AXES, TURNING_ORDER, State
 
 #: G51 P and I, J, K count thousandths where they have no decimal point.
 _SCALE_UNIT = 0.001
@@ -46,22 +46,27 @@ def _with(state: State, name: str, turning: Turning | None) -> State:
     return state.with_modes(turnings=MappingProxyType(turnings)).reframed()
 
 
-def _centre(state: State, command: Command) -> Point:
-    """The point named by absolute axis words, program coordinates; where an axis has none, the tool's."""
+def _centre(state: State, command: Command, name: str) -> Point:
+    """The centre of the map `name`: axis words are coordinates even with G91; where an axis has none, the tool's.
+
+    The maps that act on a point before this one act on its centre, too.
+    """
     here, words, modes = state.program_mm, command.words, state.modes
     x, y, z = (
-        _coordinate(modes.absolute, old, words[axis].value * modes.unit_mm) if axis in words else old
-        for axis, old in zip(AXES, here, strict=True)
+        words[axis].value * modes.unit_mm if axis in words else old for axis, old in zip(AXES, here, strict=True)
     )
-    return (x, y, z)
-
-
-def _coordinate(absolute: bool, old: float, value: float) -> float:
-    return value if absolute else old + value
+    centre = (x, y, z)
+    for before in TURNING_ORDER[: TURNING_ORDER.index(name)]:
+        if before in modes.turnings:
+            centre = modes.turnings[before].of(centre)
+    return centre
 
 
 def _rotate(state: State, command: Command, use: Use) -> State:
-    """G68: about the given point of the plane, by R degrees counter-clockwise, which replaces what held."""
+    """G68: about the given point of the plane, by R degrees counter-clockwise, which replaces what held.
+
+    Under a mirror image of one of the plane's axes it turns the other way round.
+    """
     word = command.words.get("R")
     if word is None:
         raise command.block.error(use.word, "missing-word", f"{use.word.text} without R", "R and an angle in degrees")
@@ -71,7 +76,9 @@ def _rotate(state: State, command: Command, use: Use) -> State:
         problem = f"{command.words[third].text} in a rotation of G{plane}"
         raise command.block.error(command.words[third], "unused-word", problem, "the centre in the plane alone")
     bare = _with(state, "rotation", None)
-    return _with(state, "rotation", rotation(plane, word.value, _centre(bare, command)))
+    seen = {AXES[index] for index in PLANE_AXES[plane][:2]} & _mirrored(state)
+    angle = -word.value if len(seen) == 1 else word.value
+    return _with(state, "rotation", rotation(plane, angle, _centre(bare, command, "rotation")))
 
 
 def _scale(state: State, command: Command, use: Use) -> State:
@@ -86,7 +93,7 @@ def _scale(state: State, command: Command, use: Use) -> State:
     letters = ("P", "P", "P") if "P" in words else ("I", "J", "K")
     x, y, z = (_factor(command, letter) for letter in letters)
     bare = _with(state, "scaling", None)
-    return _with(state, "scaling", scaling((x, y, z), _centre(bare, command)))
+    return _with(state, "scaling", scaling((x, y, z), _centre(bare, command, "scaling")))
 
 
 def _factor(command: Command, letter: str) -> float:
@@ -111,7 +118,7 @@ def _mirror(state: State, command: Command, use: Use) -> State:
     named = {axis for axis in AXES if axis in command.words}
     if not named:
         raise command.block.error(use.word, "missing-axis", f"{use.word.text} names no axis", "at least one of X, Y, Z")
-    centre = _centre(_with(state, "mirror", None), command)
+    centre = _centre(_with(state, "mirror", None), command, "mirror")
     return _with_mirror(state, _mirrored(state) | named, centre, named)
 
 

@@ -98,6 +98,12 @@ class Dialect:
         one_shot_with_motion: G0 to G3 beside G28 only sets the mode; else such a block is refused.
         machine_moves_rapid: G53 always moves at rapid; else G0 or G1 must be active and decides.
         reference_all_axes: G28 without axes returns all of them; else it is refused.
+        reference_cancels_length: G28 and G30 end the tool length offset.
+        additional_offsets: how many additional work offsets there are.
+        tool_variables: system variables of the tool offset table: first number, count and column.
+        common_shift_variables: what #5201 and on are: the external work offset, or the shift of G52.
+        first_alarm: number of the alarm that #3000 = 0 would raise.
+        helix_feed_along_arc: F of a helix is the feed along its arc in the plane; else along its path.
         shift_is_rotated: G92 and G52 share one shift, and it lies inside the work offset's rotation.
         semicolon_ends_block: a semicolon is an end of block, so words behind it are the next block.
         leader: text before the first percent sign is a leader to be skipped, wherever that percent sign is.
@@ -138,6 +144,12 @@ class Dialect:
     one_shot_with_motion: bool
     machine_moves_rapid: bool
     reference_all_axes: bool
+    reference_cancels_length: bool
+    additional_offsets: int
+    tool_variables: tuple[tuple[int, int, str], ...]
+    common_shift_variables: Literal["external", "local"]
+    first_alarm: int
+    helix_feed_along_arc: bool
     shift_is_rotated: bool
     semicolon_ends_block: bool
     leader: bool

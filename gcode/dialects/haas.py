@@ -48,5 +48,17 @@ HAAS = replace(
     cycles=HAAS_CYCLES,
     data_kinds={kind: what for kind, what in FANUC.data_kinds.items() if what != "ignored"},
     packed_calls=False,
+    reference_all_axes=True,
+    reference_cancels_length=True,
+    additional_offsets=99,
+    tool_variables=(
+        (2001, 200, "length_mm"),
+        (2201, 200, "length_wear_mm"),
+        (2401, 200, "radius_mm"),
+        (2601, 200, "radius_wear_mm"),
+    ),
+    common_shift_variables="local",
+    first_alarm=1000,
+    helix_feed_along_arc=False,
     dwell={"P": DwellWord(seconds=0.001, pointed=1.0), "X": DwellWord(seconds=1.0, pointed=1.0)},
 )
