@@ -17,6 +17,8 @@ from gcode.targets import moved_to, programmed_end, settled
 
 #: Feed that is taken to hold once a missing one has been reported, mm/min.
 _ASSUMED_FEED = 1.0
+#: Words that are left out of a block; one with more mistakes tells nothing.
+_MOST_LEFT_OUT = 50
 
 
 def recovered(state: State, block: ParsedBlock, error: GcodeError) -> State:
@@ -40,7 +42,7 @@ def recovered(state: State, block: ParsedBlock, error: GcodeError) -> State:
 def _without_refused_words(state: State, block: ParsedBlock) -> Command | None:
     """The block's command once the words that stand in its way are left out, None where that does not help."""
     words = block.words
-    while True:
+    for _ in range(_MOST_LEFT_OUT):
         try:
             return resolve(state, replace(block, words=words))
         except GcodeError as error:
@@ -48,3 +50,4 @@ def _without_refused_words(state: State, block: ParsedBlock) -> Command | None:
             if len(left) == len(words):
                 return None
             words = left
+    return None

@@ -282,6 +282,14 @@ def test_what_is_no_number_is_no_number(dialect: str, text: str, code: str, colu
     assert (error.code, error.place.column) == (code, column)
 
 
+def test_a_block_of_mistakes_is_given_up() -> None:
+    """`check` does not look for what is left of a block word by word for ever."""
+    text = f"{'G1 ' * 1300}\nG0 X1\n" * 10 + "M30"
+    with time_bound(20.0):
+        errors = check(text)
+    assert [(error.code, error.place.line) for error in errors] == [("group-conflict", n) for n in range(1, 20, 2)]
+
+
 def test_a_name_that_no_file_can_have(tmp_path: Path) -> None:
     for dialect, line in (("linuxcnc", f"o<{'a' * 4000}> call"), ("fanuc", f"M98 P[{'9' * 300}]")):
         path = tmp_path / f"{dialect}.nc"

@@ -204,7 +204,7 @@ def assert_laws(text: str, dialect: Dialect, settings: MachineSettings = SETTING
     met, errors = outcome(text, dialect, settings), check(text, dialect=dialect, settings=settings)
     first = errors[0] if errors else None
     assert str(first) == str(met.error), f"check says {first}, interpret {met.error}"
-    lines = list(program_of(text, "").__iter__()) or [""]
+    lines = list(program_of(text, "")) or [""]
     for error in errors:
         assert_well_told(error, lines)
     assert_finite(met.events)
