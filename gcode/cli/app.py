@@ -9,11 +9,12 @@ import typer
 from gcode.cli.check import check
 from gcode.cli.motions import motions
 from gcode.cli.plot import plot
+from gcode.cli.rewrite import rewrite
 from gcode.cli.stats import stats
 
 app = typer.Typer(
     name="gcode",
-    help="Reads NC programs as a control does: checks them, and tells their motions.",
+    help="Reads NC programs as a control does: checks them, tells their motions, writes them anew.",
     epilog="Exit codes: 0 done, 1 a program has mistakes that messages name, 2 wrong arguments or a file that cannot "
     "be used, 130 Ctrl-C.",
     no_args_is_help=True,
@@ -22,7 +23,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (check, motions, stats, plot):
+for command in (check, motions, stats, plot, rewrite):
     app.command()(command)
 
 

@@ -163,6 +163,24 @@ def test_files_that_cannot_be_read(cli: Cli, nc: Path, tmp_path: Path) -> None:
     ]
 
 
+def test_a_program_is_written_anew_for_another_control(cli: Cli, nc: Path, tmp_path: Path) -> None:
+    out = tmp_path / "new.ngc"
+    assert cli("rewrite", nc, "-o", out, "--to", "linuxcnc", "--units", "inch", "--decimals", 6) == (0, "", "")
+    assert out.read_text().startswith("G20 ")
+    old, new = cli("motions", nc)[1].splitlines(), cli("motions", out, "--dialect", "linuxcnc")[1].splitlines()
+    for before, after in zip(map(json.loads, old), map(json.loads, new), strict=True):
+        assert after["type"] == before["type"]
+        assert after["end"] == pytest.approx(before["end"], abs=3e-5)
+        assert after["feed_mm_min"] == pytest.approx(before["feed_mm_min"], rel=1e-4)
+
+
+def test_what_cannot_be_written_leaves_no_file(cli: Cli, nc: Path, tmp_path: Path) -> None:
+    code, out, err = cli("rewrite", nc, "-o", tmp_path / "new.nc", "--to", "grbl")
+    assert (code, out) == (1, "")
+    assert f"event 3, from {nc}:3:1: a change to tool 3, which grbl does not have" in err
+    assert [path.name for path in tmp_path.iterdir()] == ["part.nc"]
+
+
 @pytest.mark.parametrize("command", ["motions", "stats", "plot", "check"])
 def test_tables_with_mistakes_are_named(cli: Cli, nc: Path, tmp_path: Path, command: str) -> None:
     table = tmp_path / "t.tbl"
@@ -188,6 +206,10 @@ def test_tables_with_mistakes_are_named(cli: Cli, nc: Path, tmp_path: Path, comm
         ("plot", "{nc}", "-o", "p.bmp"),
         ("plot", "{nc}", "-o", "none/p.png"),
         ("plot", "{nc}", "-o", "p.png", "--view", "zz"),
+        ("rewrite", "{nc}"),
+        ("rewrite", "{nc}", "-o", "none/p.nc"),
+        ("rewrite", "{nc}", "-o", "p.nc", "--wcs", "G60"),
+        ("rewrite", "{nc}", "-o", "p.nc", "--to", "grbl", "--program-number", "5"),
         ("mill", "{nc}"),
     ],
 )

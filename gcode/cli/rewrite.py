@@ -1,0 +1,117 @@
+"""``gcode rewrite``."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from gcode.cli.machine import (
+    BlockDeleteOption,
+    DialectName,
+    DialectOption,
+    MachineUnit,
+    ParametersOption,
+    ProgramFile,
+    SearchPathOption,
+    SettingsOption,
+    ToolTableOption,
+    UnitOption,
+    setup_of,
+)
+
+if TYPE_CHECKING:
+    from gcode.events import Point
+    from gcode.settings import MachineSettings
+
+
+class Distance(StrEnum):
+    """What coordinates are measured from."""
+
+    ABSOLUTE = "absolute"
+    INCREMENTAL = "incremental"
+
+
+class Arcs(StrEnum):
+    """How arcs are written."""
+
+    CENTRE = "centre"
+    RADIUS = "radius"
+
+
+def rewrite(
+    file: ProgramFile,
+    out: Annotated[
+        Path, typer.Option("--out", "-o", metavar="FILE", help="Program to write.", show_default=False, dir_okay=False)
+    ],
+    to: Annotated[
+        DialectName | None,
+        typer.Option(help="Control to write for; the program's own if not given.", show_default=False),
+    ] = None,
+    units: Annotated[MachineUnit, typer.Option(help="Unit of the program written.")] = MachineUnit.MM,
+    distance: Annotated[Distance, typer.Option(help="Coordinates as places or as ways.")] = Distance.ABSOLUTE,
+    arcs: Annotated[Arcs, typer.Option(help="Arcs by I, J, K or, where it is safe, by R.")] = Arcs.CENTRE,
+    decimals: Annotated[
+        int | None, typer.Option(min=0, max=6, help="Digits after the point of coordinates.", show_default=False)
+    ] = None,
+    number_step: Annotated[
+        int | None, typer.Option(min=1, max=1000, help="Step of the block numbers.", show_default=False)
+    ] = None,
+    program_number: Annotated[
+        int | None, typer.Option(min=1, help="O number, for FANUC and Haas.", show_default=False)
+    ] = None,
+    wcs: Annotated[str, typer.Option(help="Work offset that the coordinates are in.")] = "G54",
+    dialect: DialectOption = DialectName.FANUC,
+    tool_table: ToolTableOption = None,
+    parameters: ParametersOption = None,
+    settings: SettingsOption = None,
+    machine_units: UnitOption = None,
+    block_delete: BlockDeleteOption = False,
+    search_path: SearchPathOption = None,
+) -> None:
+    """Write a program anew: the same motions for another control, in other units, or without macros and cycles.
+
+    Subprograms, macros, cycles, work offsets and cutter compensation are worked out; what is written are plain
+    motions. A length offset stays G43 H, so the same tool table must be at the control.
+    """
+    from gcode.cli.say import UnusableFileError, with_progress
+    from gcode.dialects import dialect_named
+    from gcode.interpret import interpret_file
+    from gcode.write import WriteOptions, write_file
+
+    setup = setup_of(
+        dialect=dialect,
+        settings=settings,
+        tool_table=tool_table,
+        parameters=parameters,
+        machine_units=machine_units,
+        block_delete=block_delete,
+        search_path=search_path,
+    )
+    try:
+        options = WriteOptions(
+            dialect=dialect_named((to or dialect).value),
+            units=units.value,
+            distance=distance.value,
+            arcs=arcs.value,
+            decimals=decimals,
+            number_step=number_step,
+            program_number=program_number,
+            wcs=wcs,
+            shift_mm=_zero(setup.settings, wcs),
+            tools=setup.settings.tools,
+            tool=setup.settings.tool,
+        )
+        events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
+        write_file(out, with_progress(events, file.name), options)
+    except (ValueError, OSError) as error:
+        raise UnusableFileError(str(error)) from None
+
+
+def _zero(settings: MachineSettings, wcs: str) -> Point:
+    """Place of a work zero in machine coordinates."""
+    x, y, z = settings.offsets.get(wcs, (0.0, 0.0, 0.0))
+    dx, dy, dz = settings.external_offset_mm
+    return (x + dx, y + dy, z + dz)
