@@ -142,7 +142,7 @@ def test_turns_that_a_control_cannot_count_are_written_one_by_one(source: random
 
 @given(
     st.randoms(use_true_random=False),
-    st.floats(1e-5, 0.2),
+    st.floats(1e-5, 0.05),
     st.one_of(st.floats(1e-6, 0.05), st.floats(math.tau - 0.05, math.tau - 1e-9), st.floats(0.05, 6.2)),
     st.sampled_from(sorted(DIALECTS)),
     st.sampled_from(["mm", "inch"]),
@@ -160,8 +160,8 @@ def test_tiny_arcs_stay_tiny(
     options = WriteOptions(dialect=DIALECTS[dialect], units=units, arcs=arcs)  # type: ignore[arg-type]
     made = motions_of(read_back("\n".join(program_lines(path.events, options)), dialect))[1:]
     step = options.grid.step_mm
-    reached = np.concatenate([points_mm(one, step / 100.0) for one in made])
-    true = points_mm(arc, step / 100.0)
+    reached = np.concatenate([points_mm(one, step / 500.0) for one in made])
+    true = points_mm(arc, step / 500.0)
     apart = np.linalg.norm(reached[:, None, :] - true[None, :, :], axis=2)
     assert apart.min(axis=1).max() <= 5.0 * step
     assert apart.min(axis=0).max() <= 5.0 * step
