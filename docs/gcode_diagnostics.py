@@ -97,7 +97,7 @@ ERRORS: Mapping[str, str] = {
     "reference-missed": "G27 does not end at the reference point",
     "repeated-word": "a letter twice in a block",
     "return-place": "M99 in a subroutine of O-words",
-    "runaway": "more blocks were executed than `limits.blocks`",
+    "runaway": "more blocks were executed than `limits.blocks`, or more jumps back made than `limits.jumps`",
     "scaling-two": "G51 with P beside I, J, K",
     "settings-key": "a key that no settings file has",
     "settings-syntax": "a settings file that is no TOML",

@@ -201,6 +201,7 @@ def limits() -> str:
     given = Limits()
     rows = (
         ("blocks executed", f"{given.blocks:,}", "setting `limits.blocks`"),
+        ("jumps back, as loops make them", f"{given.jumps:,}", "setting `limits.jumps`"),
         ("calls inside each other", str(given.nesting), "setting `limits.nesting`"),
         ("mistakes that `check` collects", str(given.errors), "setting `limits.errors`"),
         ("size of a program file", f"{program.MAX_BYTES // 2**20:,} MiB", ""),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import replace
+from typing import NoReturn
 
 from gcode import flow
 from gcode.blocks import ParsedBlock
@@ -74,6 +75,7 @@ class Runner:
         self._refuse = refuse
         self._bulk = bulk
         self._blocks = 0
+        self._jumps = 0
         self._line_offset = 0
         self._parsed: dict[tuple[int, int], tuple[tuple[ParsedBlock, ...], int]] = {}
         self.place = Place(file=program.file, line=1)
@@ -172,17 +174,25 @@ class Runner:
         return parse_blocks(place, self.dialect)[0]
 
     def count_jump(self, place: Place) -> None:
-        """Counts a jump back as a block, so that a loop without blocks ends, too."""
-        self._count_block(place.line)
+        """Counts a jump back, so that a loop without an end is found before it has run for long.
+
+        Raises:
+            GcodeError: beyond `Limits.jumps`.
+        """
+        self._jumps += 1
+        if self._jumps > self.settings.limits.jumps:
+            self._run_away(place.line, f"more than {self.settings.limits.jumps} jumps back were made")
 
     def _count_block(self, line: int, blocks: int = 1) -> None:
         self._blocks += blocks
         limit = self.settings.limits.blocks
         if self._blocks > limit:
-            self.state = replace(self.state, ended=True)
-            place = Place(file=self.level.program.file, line=line, calls=self.level.calls)
-            problem = f"more than {limit} blocks were executed"
-            raise GcodeError(place, "runaway", problem, "a program that ends, or a higher limit")
+            self._run_away(line, f"more than {limit} blocks were executed")
+
+    def _run_away(self, line: int, problem: str) -> NoReturn:
+        self.state = replace(self.state, ended=True)
+        place = Place(file=self.level.program.file, line=line, calls=self.level.calls)
+        raise GcodeError(place, "runaway", problem, "a program that ends, or a higher limit")
 
     def _end_of_text(self) -> Iterator[Event]:
         """The text is over: the end of a main program, or a subprogram without its return."""

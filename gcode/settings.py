@@ -75,11 +75,13 @@ class Limits:
 
     Attributes:
         blocks: blocks executed in all.
+        jumps: jumps back in all, as loops make them.
         nesting: levels of calls and macros.
         errors: mistakes that a check collects before it stops.
     """
 
     blocks: int = 20_000_000
+    jumps: int = 1_000_000
     nesting: int = 64
     errors: int = 200
 

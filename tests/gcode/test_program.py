@@ -169,6 +169,15 @@ def test_events_come_as_blocks_are_run() -> None:
         list(endless)
 
 
+@pytest.mark.parametrize("loop", ["N1 GOTO 1", "WHILE[1EQ1]DO1\nG91 G0 X1\nEND1"])
+def test_a_loop_without_an_end_is_found_by_its_jumps(loop: str) -> None:
+    settings = MachineSettings(limits=Limits(jumps=100))
+    with pytest.raises(GcodeError, match="more than 100 jumps back were made; expected a program that ends") as caught:
+        list(interpret(loop, settings=settings))
+    assert caught.value.code == "runaway"
+    assert [error.code for error in check(loop, settings=settings)] == ["runaway"]
+
+
 def test_check_tells_every_mistake_once() -> None:
     text = "G1 X1\nX2\nG41 G0 X5\nG3 F1 X20 I1\nX7 Y8 (\nG2 X30 I5 J0\nM6\nA1 G777 X2\nM30\nG999"
     told = [(e.place.line, e.place.column, e.code) for e in check(text)]
