@@ -134,6 +134,8 @@ def _claim_words(state: State, block: ParsedBlock, uses: list[Use], words: Mappi
             return False
         claimed += use.rule.letters
         owner = use if use.rule.takes_axes else owner
+    if explicit and explicit.rule.code == "G80" and "cycle" in explicit.rule.groups:
+        motion = dialect.codes[state.modes.base_motion]
     if owner and explicit and not dialect.one_shot_with_motion:
         problem = f"{owner.word.text} and {explicit.word.text} both take the axis words"
         raise block.error(explicit.word, "axis-conflict", problem, "one of them in a block")

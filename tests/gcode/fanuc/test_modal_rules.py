@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcode.events import Dwell, LinearMotion, Notice, SpindleChange
+from gcode.settings import ToolOffset
 
 ONE_SHOTS = {
     "G4": "G4 P100",
@@ -30,15 +31,9 @@ def test_one_shot_codes_hold_for_their_block_alone(block: str, motion: str, moti
 
 def test_codes_of_different_groups_stand_in_one_block(motions) -> None:
     """The same chapter: G codes of different groups can be given in one block."""
-    (moved,) = motions("G91 G20 G1 G41 D1 X1. F2.", tools={1: _radius(0.0)})
+    (moved,) = motions("G91 G20 G1 G41 D1 X1. F2.", tools={1: ToolOffset()})
     assert moved.feed_mm_min == pytest.approx(50.8)
     assert (moved.state.compensation, moved.end_mm[0]) == ("left", pytest.approx(25.4))
-
-
-def _radius(radius_mm: float) -> object:
-    from gcode.settings import ToolOffset
-
-    return ToolOffset(radius_mm=radius_mm)
 
 
 @pytest.mark.parametrize("code", ["G0", "G1", "G2", "G3"])
@@ -64,6 +59,13 @@ def test_a_cycle_beside_g0_is_the_cycle(strokes) -> None:
 
 def test_g80_beside_g0_moves_at_rapid(strokes) -> None:
     assert strokes("G1 F9 X1.\nG81 Z-3. R2. X2.\nG80 G0 X9.")[-1] == "R 9 0 0"
+
+
+@pytest.mark.parametrize("motion", ["G0", "G1"])
+def test_axis_words_beside_g80_move_as_before_the_cycle(motion: str, strokes) -> None:
+    """FANUC 30i user's manual, "Canned cycle for drilling", cancel: G80 leaves the code of group 01 to the block."""
+    told = strokes(f"{motion} X1. F9\nG81 Z-3. R2. X2.\nG80 Z9. M9")
+    assert told[-1] == ("R 2 0 9" if motion == "G0" else "F 2 0 9")
 
 
 def test_modes_at_power_on(motions) -> None:
