@@ -6,7 +6,6 @@ import cmath
 import itertools
 import json
 import math
-import os
 import random
 import re
 import shutil
@@ -14,6 +13,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from support.reference import GCODE
 
 from gcode import compensation
 from gcode.errors import GcodeError, Place
@@ -221,9 +221,9 @@ def event_of(row: dict[str, object], start: Point) -> Motion:
     return LinearMotion(**keys, rapid=row["t"] == "rapid", feed_mm_min=60.0)
 
 
-@pytest.mark.skipif("TWIN_REFERENCE_DIR" not in os.environ, reason="TWIN_REFERENCE_DIR is not set")
+@pytest.mark.skipif(not GCODE.is_dir(), reason="TWIN_REFERENCE_DIR does not hold it")
 def test_entry_by_a_line_and_an_arc_of_the_reference_program() -> None:
-    folder = Path(os.environ["TWIN_REFERENCE_DIR"]) / "gcode" / "ccomp__mill-line-arc-entry"
+    folder = GCODE / "ccomp__mill-line-arc-entry"
     rows = json.loads((folder / "expected_motions.json").read_text())
     half = len(rows) // 2
     start: Point = tuple(rows[0]["end"])

@@ -1,19 +1,15 @@
-"""Programs of other people, read from the directory that TWIN_REFERENCE_DIR names; skipped where it is not set.
-
-Layout: ``reference/gcode/NAME/*.ngc`` (or ``gcode/NAME``) with ``expected_motions.json`` or ``expected_error.txt``,
-made by LinuxCNC on an inch machine, and ``nc/*.NC``.
-"""
+"""Programs of other people, which may not be copied: see `support.reference`."""
 
 from __future__ import annotations
 
 import json
 import math
-import os
 import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
+from support.reference import GCODE, NC
 from support.rs274 import RS274, Move, moves_of, rows_of, run
 from support.rs274_compare import our_moves, settings_of, timed
 
@@ -25,11 +21,9 @@ from gcode.settings import MachineSettings, ToolOffset
 
 #: The expected motions were read from text with four decimals of an inch.
 TOLERANCE_MM = 0.005
-ROOT = Path(os.environ.get("TWIN_REFERENCE_DIR", "/nonexistent"))
-GCODE = next((p for p in (ROOT / "reference" / "gcode", ROOT / "gcode") if p.is_dir()), Path())
-CASES = sorted(p.name for p in GCODE.iterdir()) if GCODE.name else []
+CASES = sorted(p.name for p in GCODE.iterdir()) if GCODE.is_dir() else []
 
-pytestmark = pytest.mark.skipif(not CASES, reason="TWIN_REFERENCE_DIR names no directory with gcode cases")
+pytestmark = pytest.mark.skipif(not CASES, reason="TWIN_REFERENCE_DIR does not hold it")
 
 
 def files_of(name: str) -> tuple[Path, Path | None]:
@@ -87,7 +81,7 @@ def test_reading_rs274_gives_the_expected_motions(name: str, tmp_path: Path) -> 
     ],
 )
 def test_real_programs_run_whole(name: str, centres: Any, lines: int, arcs: int) -> None:
-    path = ROOT / "nc" / name
+    path = NC / name
     if not path.exists():
         pytest.skip(f"{path} is not there")
     settings = MachineSettings(

@@ -5,11 +5,11 @@ They may not be copied, so these tests run only where ``TWIN_REFERENCE_DIR`` hol
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
 import pytest
+from support.reference import NC
 
 from twin.archive import read_forces, run_info
 from twin.job import job_from_dict
@@ -17,7 +17,6 @@ from twin.record import RunSummary
 from twin.replay import Replay
 from twin.sinks.mcap_sink import McapSink
 
-FOLDER = Path(os.environ.get("TWIN_REFERENCE_DIR", "/nonexistent")) / "nc"
 STEEL = {"Ktc": 1900.0, "Kte": 22.0, "Krc": 700.0, "Kre": 45.0, "Kac": 400.0, "Kae": 2.0, "source": "test"}
 
 JOBS: dict[str, dict[str, Any]] = {
@@ -52,10 +51,10 @@ JOBS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("name", JOBS)
 def test_a_real_program_replays_with_forces_and_archive(name: str, tmp_path: Path) -> None:
-    if not (FOLDER / name).is_file():
+    if not (NC / name).is_file():
         pytest.skip("TWIN_REFERENCE_DIR does not hold it")
     data = {**JOBS[name], "cutting": STEEL}
-    data["program"] = {**data["program"], "file": str(FOLDER / name)}
+    data["program"] = {**data["program"], "file": str(NC / name)}
     archive = tmp_path / "run.mcap"
     with Replay(job_from_dict(data, tmp_path)) as replay, McapSink(archive) as sink:
         before = replay.workpiece.volume_mm3(2)
