@@ -54,6 +54,12 @@ class Frame:
         """A difference of two program points, in machine axes."""
         return vector if self.matrix is None else _times(self.matrix, vector)
 
+    @property
+    def keeps_lengths(self) -> bool:
+        """Whether program lengths are lengths of the machine: no scaling, but perhaps turned or mirrored."""
+        columns = zip(*self.matrix, strict=True) if self.matrix is not None else ()
+        return all(abs(math.hypot(*column) - 1.0) <= _SAME_SCALE for column in columns)
+
     def plane_scale(self, plane: int) -> float | None:
         """Signed factor by which the plane's lengths grow, negative where it is turned over; None where it is uneven.
 

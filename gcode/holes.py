@@ -44,6 +44,9 @@ def drill(state: State, command: Command) -> Result:
     if state.path is not None and state.path.compensates:
         problem = f"{state.modes.motion} while cutter compensation is on"
         raise command.block.error(None, "compensation-cycle", problem, "G40 before it")
+    if not state.frame.keeps_lengths:
+        problem = f"{state.modes.motion} while lengths are scaled, which controls do to some words of a cycle only"
+        raise command.block.error(None, "cycle-scaled", problem, "G50 before it")
     i, j, k = PLANE_AXES[state.machine.plane]
     here = state.program_mm
     if not state.modes.in_cycle:

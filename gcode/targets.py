@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from gcode.blocks import Word
 from gcode.events import PLANE_AXES, Extra, Point
+from gcode.frame import SAME_PLACE_MM
 from gcode.modal import Command
 from gcode.offsets import extra_value, known_offsets, to_extra
 from gcode.state import AXES, EXTRA_AXES, State
@@ -70,7 +71,11 @@ def program_end(state: State, command: Command) -> Point:
 
 
 def _from_polar(state: State, command: Command, here: Point, end: list[float]) -> Point:
-    """The plane's words read as a radius and an angle; one that is missing stays."""
+    """The plane's words read as a radius and an angle; one that is missing stays.
+
+    Raises:
+        GcodeError: for an incremental radius that is not measured from where the tool was at G16.
+    """
     i, j, _ = PLANE_AXES[state.machine.plane]
     words, modes = command.words, state.modes
     if AXES[i] not in words and AXES[j] not in words:
@@ -78,6 +83,10 @@ def _from_polar(state: State, command: Command, here: Point, end: list[float]) -
     centre = modes.polar_centre_mm or (0.0, 0.0, 0.0)
     u, v = here[i] - centre[i], here[j] - centre[j]
     radius, angle = math.hypot(u, v), math.degrees(math.atan2(v, u))
+    if AXES[i] in words and not modes.absolute and radius > SAME_PLACE_MM:
+        word = words[AXES[i]]
+        problem = f"{word.text} as an incremental radius away from the polar origin, which controls take differently"
+        raise command.block.error(word, "polar-incremental", problem, "G90, or G16 again where the tool is")
     if AXES[i] in words:
         radius = _length(state, words[AXES[i]]) + (0.0 if modes.absolute else radius)
     if AXES[j] in words:

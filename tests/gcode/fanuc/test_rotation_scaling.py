@@ -179,6 +179,19 @@ def test_polar_origin_with_g91_is_where_the_tool_is(ends) -> None:
     assert ends("G0 X7. Y3.\nG91 G16 X10. Y30.")[-1] == pytest.approx((7 + 10 * math.cos(math.pi / 6), 8, 0))
 
 
+def test_a_second_incremental_radius_is_refused(refusal) -> None:
+    """The manual measures it from the present position, other controls add it to the radius so far."""
+    error = refusal("G0 X7. Y3.\nG91 G16 X10. Y30.\nX5.")
+    assert (error.code, error.place.line) == ("polar-incremental", 3)
+
+
+def test_a_cycle_is_refused_while_lengths_are_scaled(motions, refusal) -> None:
+    """FANUC 30i user's manual, "Scaling": pecks, clearances and shifts of cycles are not scaled. A mirror image is."""
+    assert refusal("G51 P2000\nG83 X1. Z-5. R2. Q1. F100").code == "cycle-scaled"
+    mirrored = [m.end_mm for m in motions("G51.1 X0\nG99 G81 X1. Z-5. R2. F100\nG80") if not m.rapid]
+    assert mirrored == [pytest.approx((-1, 0, -5))]
+
+
 @pytest.mark.parametrize(
     ("plane", "words", "end"), [("G18", "Z10. X90.", (10, 0, 0)), ("G19", "Y10. Z90.", (0, 0, 10))]
 )
