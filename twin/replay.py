@@ -8,6 +8,7 @@ for record in run:
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator
 from itertools import pairwise
 from types import TracebackType
@@ -20,7 +21,7 @@ from gcode.events import Block, Event, ToolChange
 from gcode.interpret import interpret
 from gcode.program import read_program
 from twin.arrays import FloatArray
-from twin.cutting.engagement import NO_ENGAGEMENT, EngagementMap
+from twin.cutting.engagement import Positions
 from twin.errors import CollisionError, ReplayError
 from twin.job import Job
 from twin.motion.from_nc import moves_from_nc
@@ -33,9 +34,15 @@ from twin.run.material import Material
 from twin.run.nc_events import nc_event
 from twin.run.preview import FRAMES, Preview
 from twin.run.setup import ToolSetup, machine_settings, stock_slices, tool_setup, workpiece
+from twin.run.solve import IN_AIR, Solved, StepSolver
 from twin.run.totals import Totals
 from twin.tolerance import Tolerance
 from twin.workpiece.to_mesh import SurfaceMesh, surface_mesh
+
+#: Threads that work on slices and steps.
+THREADS = min(8, os.cpu_count() or 1)
+#: Steps of a motion that are solved together, whatever the number of threads.
+_STEPS_TOGETHER = 64
 
 
 class Replay:
@@ -45,12 +52,14 @@ class Replay:
 
     Args:
         strict: end at the first collision with a `CollisionError` instead of reporting it and going on.
+        threads: how many work on slices and steps; results do not depend on it.
+        preview: whether patches of the workpiece's surface are among the records.
 
     Raises:
         TwinError, gcode.errors.GcodeError: a job, tool, stock or program that cannot be replayed.
     """
 
-    def __init__(self, job: Job, *, strict: bool = False) -> None:
+    def __init__(self, job: Job, *, strict: bool = False, threads: int = THREADS, preview: bool = True) -> None:
         self.job = job
         self._strict = strict
         self._tolerance = Tolerance.for_pitch(job.simulation.slice_pitch_mm)
@@ -59,20 +68,23 @@ class Replay:
         self._tools = {t.number: tool_setup(job, t, self._tolerance) for t in job.tools}
         self.planned_time_s = math.fsum(self._checked_durations())
         self.workpiece = workpiece(job, slices)
-        self._material = Material(self.workpiece, self._tolerance)
+        self._material = Material(self.workpiece, self._tolerance, threads)
+        self._solver = StepSolver(self.workpiece, threads)
         self._rows = round(360.0 / job.simulation.angle_step_deg)
         self._clock = SpindleClock(self._rows)
         self._descriptions = {n: t.description for n, t in self._tools.items()}
         self._totals = Totals(self._descriptions)
         self._frame_s = self.planned_time_s / FRAMES or math.inf
-        self._preview = Preview(self.workpiece, job.simulation.preview_pitch_mm, self._frame_s)
+        self._frame_s = self._frame_s if preview else math.inf
+        self._preview = Preview(self.workpiece, job.simulation.preview_pitch_mm, self._frame_s) if preview else None
         self._t_s = 0.0
         self._steps = 0
         self._checked_tool = 0
 
     def __iter__(self) -> Iterator[Record]:
         yield run_header(self.job, self.workpiece, [t.record for t in self._tools.values()], self.planned_time_s)
-        yield from self._preview.all_patches(0.0)
+        if self._preview is not None:
+            yield from self._preview.all_patches(0.0)
         for item in self._program():
             yield from self._move(item) if isinstance(item, Move) else self._event(item)
         self._material.flush()
@@ -124,7 +136,8 @@ class Replay:
         tool = self._tools.get(move.tool)
         if tool is None or not self._material.near(tool, *_box(move)):
             for start, end, duration_s in _pieces(move, math.inf, 0.5 * self.job.simulation.slice_pitch_mm):
-                yield self._step(move, start, end, duration_s, None, None)
+                turned = self._clock.advance(self._t_s, duration_s, move.spindle_rpm)
+                yield self._step(move, start, end, duration_s, turned)
             return
         self._refuse_start_inside(tool, move)
         contacts = Contacts()
@@ -133,7 +146,7 @@ class Replay:
             for a, b, part_s in _frames(start, end, duration_s, self._frame_s):
                 yield from self._piece(move, tool, a, b, part_s)
                 contacts.add(self._material.cut(tool, a, b, _forbidden(move)), begun_s, start)
-                if self._preview.due(self._t_s):
+                if self._preview is not None and self._preview.due(self._t_s):
                     yield from self._changed_patches()
             contacts.add(self._material.touches(tool, start, end), begun_s, start)
         for kind, contact in contacts.found.items():
@@ -146,24 +159,33 @@ class Replay:
         if _forbidden(move) is None and np.any(end != start):
             yield from self._cut(move, tool, start, end, duration_s)
         else:
-            yield self._step(move, start, end, duration_s, None, None)
+            yield self._step(move, start, end, duration_s, self._clock.advance(self._t_s, duration_s, move.spindle_rpm))
 
     def _cut(
         self, move: Move, tool: ToolSetup, start: FloatArray, end: FloatArray, duration_s: float
     ) -> Iterator[Record]:
-        """The steps of a feed motion, each asked for its engagement at its middle."""
+        """The steps of a feed motion, each asked for its engagement at its middle, many of them together."""
         along = end - start
         length = float(np.linalg.norm(along))
         feed = along / length
         count = max(1, math.ceil(length / self.job.simulation.step_mm * (1.0 - 1e-9)))
-        per_tooth = move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)
-        pending = self._material.pending
-        for i in range(count):
-            a, b = start + along * (i / count), start + along * ((i + 1) / count)
-            found = tool.engager.engage(
-                0.5 * (a + b), feed, move.feed_mm_min / 60.0, per_tooth, self.workpiece, pending
+        ends = start + along * (np.arange(count + 1) / count)[:, None]
+        pending = self._material.pending(tool.number, start, feed)
+        for first in range(0, count, _STEPS_TOGETHER):
+            n = min(_STEPS_TOGETHER, count - first)
+            starts = self._t_s + np.arange(n) * (duration_s / count)
+            turns = [self._clock.advance(float(t_s), duration_s / count, move.spindle_rpm) for t_s in starts]
+            at = Positions(
+                0.5 * (ends[first : first + n] + ends[first + 1 : first + n + 1]),
+                np.repeat(feed[None, :], n, axis=0),
+                np.full(n, move.feed_mm_min / 60.0),
+                np.full(n, move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)),
+                np.full(n, len(pending), dtype=np.int64),
             )
-            yield self._step(move, a, b, duration_s / count, found, feed)
+            found = self._solver.solve(tool, at, [t[1] for t in turns], np.full(n, move.spindle_rpm), pending)
+            for i, (turned, solved) in enumerate(zip(turns, found, strict=True)):
+                a, b = ends[first + i], ends[first + i + 1]
+                yield self._step(move, a, b, duration_s / count, turned, solved)
 
     def _step(
         self,
@@ -171,19 +193,21 @@ class Replay:
         start: FloatArray,
         end: FloatArray,
         duration_s: float,
-        engagement: EngagementMap | None,
-        feed: FloatArray | None,
+        turned: tuple[FloatArray, FloatArray],
+        solved: Solved = IN_AIR,
     ) -> Step:
-        """The record of one step; moves time and spindle on."""
-        times, angles = self._clock.advance(self._t_s, duration_s, move.spindle_rpm)
+        """The record of one step; moves time on.
+
+        Args:
+            turned: times and spindle angles of its samples.
+        """
+        times, angles = turned
         tool = self._tools.get(move.tool)
-        if engagement is None or feed is None or tool is None or tool.forces is None:
+        loads = solved.loads
+        if loads is None:
             keep = [0, -1] if len(times) > 2 else slice(None)
             times, angles = times[keep], angles[keep]
             loads = np.zeros((len(times), 4))
-        else:
-            per_rev = move.feed_mm_min / abs(move.spindle_rpm)
-            loads = tool.forces.forces(angles, 1 if move.spindle_rpm > 0 else -1, feed, per_rev, engagement)
         if tool is not None and tool.forces is None:
             times, angles, loads = times[:0], angles[:0], loads[:0]
         torque_nm = loads[:, 3] * 1e-3
@@ -198,7 +222,7 @@ class Replay:
             rapid=move.rapid,
             feed_mm_min=move.feed_mm_min,
             spindle_rpm=move.spindle_rpm,
-            engagement=engagement.summary if engagement is not None else NO_ENGAGEMENT,
+            engagement=solved.engagement,
             samples=ForceSamples(
                 t_s=times,
                 spindle_angle_rad=angles,
@@ -235,7 +259,7 @@ class Replay:
 
     def _changed_patches(self) -> Iterator[Record]:
         changed, self._material.changed = self._material.changed, []
-        return self._preview.changed_patches(self._t_s, changed)
+        return self._preview.changed_patches(self._t_s, changed) if self._preview is not None else iter(())
 
     def summary(self, *, complete: bool = False) -> RunSummary:
         """Sums, peaks and digest of what was replayed so far."""
@@ -250,6 +274,7 @@ class Replay:
     def close(self) -> None:
         """Let worker threads go."""
         self._material.close()
+        self._solver.close()
 
     def __enter__(self) -> Self:
         return self

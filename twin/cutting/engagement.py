@@ -9,9 +9,8 @@ missed or counted twice.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,15 +39,43 @@ class EngagementMap:
 
     Attributes:
         share: shape (rows, elements), 0 to 1; row j stands at the angle j 2 pi / rows counter-clockwise from +x.
+            Elements are counted from the lowest; those that lie above the stock are left out.
         turn: shape (rows, elements), where between row j and the next an element changes from engaged to free or back.
-        elements: number of elements, from the lowest, that can be engaged; the rest are above the stock.
         summary: extent of the engagement.
     """
 
     share: FloatArray
     turn: FloatArray
-    elements: int
     summary: Engagement
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Positions:
+    """Tool positions to be asked together.
+
+    Attributes:
+        tip_mm: shape (n, 3), tool tips.
+        feed: shape (n, 3), unit feed directions.
+        feed_mm_s: shape (n,), feeds along the path.
+        feed_per_tooth_mm: shape (n,).
+        waiting: shape (n,), how many of the pending sweeps, from the first, came before each position.
+    """
+
+    tip_mm: FloatArray
+    feed: FloatArray
+    feed_mm_s: FloatArray
+    feed_per_tooth_mm: FloatArray
+    waiting: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.tip_mm)
+
+    def part(self, first: int, last: int) -> Positions:
+        """Positions ``first`` to ``last - 1``."""
+        at = slice(first, last)
+        return Positions(
+            self.tip_mm[at], self.feed[at], self.feed_mm_s[at], self.feed_per_tooth_mm[at], self.waiting[at]
+        )
 
 
 class Engager:
@@ -71,10 +98,7 @@ class Engager:
         self._cos_kappa, self._sin_kappa = np.cos(edges.kappa_rad), np.sin(edges.kappa_rad)
         end_edge = edges.kappa_rad == 0.0
         self._gate = np.where(end_edge, math.sin(math.radians(DISH_DEG)), tolerance.gate)
-        n = len(edges.z_mm)
-        self._status = np.full((rows, n), -1, dtype=np.int8)
-        self._points = np.empty((rows * n, 3))
-        self._places = np.empty((rows * n, 2), dtype=np.int64)
+        self._middle = 0.5 * (edges.bounds_mm[:-1] + edges.bounds_mm[1:])
 
     def engage(
         self,
@@ -93,13 +117,53 @@ class Engager:
             workpiece: the material before the present motion, less ``pending``: earlier sweeps that have not been
                 subtracted from its slices yet and are left out exactly.
         """
-        reach = float(workpiece.high_mm[2] - tip_mm[2])
-        elements = min(len(self._edges.z_mm), int(np.searchsorted(self._edges.z_mm, reach)) + 1)
+        at = Positions(
+            tip_mm[None, :],
+            feed[None, :],
+            np.array([feed_mm_s]),
+            np.array([feed_per_tooth_mm]),
+            np.array([len(pending)], dtype=np.int64),
+        )
+        self.prepare(at, workpiece)
+        return self.engage_all(at, workpiece, pending, Scratch())[0]
+
+    def prepare(self, at: Positions, workpiece: TriSlices) -> None:
+        """Make the workpiece ready for `engage_all` at these positions."""
+        radius, top = self._shape.max_radius_mm, workpiece.high_mm[2]
+        low, high = at.tip_mm.min(axis=0), at.tip_mm.max(axis=0)
+        if low[2] < top:
+            reach = np.array([radius, radius, 0.0])
+            workpiece.prepare(low - reach, np.array([high[0] + radius, high[1] + radius, top]))
+
+    def engage_all(
+        self, at: Positions, workpiece: TriSlices, pending: SweptVolume, scratch: Scratch
+    ) -> list[EngagementMap | None]:
+        """The engagement at each of several positions, or None in air; several threads may ask at a time.
+
+        Args:
+            at: positions for which `prepare` was called, in any order.
+            scratch: memory of the thread that asks. The maps are in it until it is used again.
+        """
+        reach = float(workpiece.high_mm[2] - at.tip_mm[:, 2].min())
         if reach <= 0.0:
-            return None
+            return [None] * len(at)
+        elements = min(len(self._edges.z_mm), int(np.searchsorted(self._edges.z_mm, reach)) + 1)
+        status = scratch.array("status", np.int8, len(at), len(self._cos_theta), elements)
+        if not self._ask_front(at, workpiece, pending, status, scratch).any():
+            return [None] * len(at)
+        share, turn = self._boundaries(at, workpiece, pending, status, scratch)
+        return [self._map(at, s, status[s], share[s], turn[s]) for s in range(len(at))]
+
+    def _ask_front(
+        self, at: Positions, workpiece: TriSlices, pending: SweptVolume, status: NDArray[np.int8], scratch: Scratch
+    ) -> NDArray[np.bool_]:
+        """Fill the status maps; tells which steps have an engaged point."""
+        elements = status.shape[2]
+        points = scratch.array("points", np.float64, status.size, 3)
+        places = scratch.array("places", np.int32, status.size, 3)
         count = kernels.front_points(
-            tip_mm,
-            feed,
+            at.tip_mm,
+            at.feed,
             self._cos_theta,
             self._sin_theta,
             self._edges.radius_mm,
@@ -108,100 +172,92 @@ class Engager:
             self._sin_kappa,
             elements,
             self._gate,
-            self._status,
-            self._points,
-            self._places,
+            status,
+            points,
+            places,
         )
-        radius = self._shape.max_radius_mm
-        workpiece.prepare(tip_mm - np.array([radius, radius, 0.0]), tip_mm + np.array([radius, radius, reach]))
-        places = self._places[:count]
-        inside = self._in_material(self._points[:count], workpiece, pending)
-        if not inside.any():
-            return None
-        kernels.mark(places, inside, self._status)
-        asked = (tip_mm, elements, workpiece, pending)
-        share, turn = self._shares(*asked), self._turns(*asked)
-        summary = self._summary(share, turn, elements, feed, feed_mm_s, feed_per_tooth_mm)
-        return EngagementMap(share, turn, elements, summary)
+        points, places = points[:count], places[:count]
+        inside = self._in_material(points, places[:, 0], at, workpiece, pending)
+        engaged = np.zeros(len(at), dtype=np.bool_)
+        kernels.mark(places, inside, status, engaged)
+        return engaged
 
-    def _in_material(self, points: FloatArray, workpiece: TriSlices, pending: SweptVolume) -> NDArray[np.bool_]:
+    def _in_material(
+        self,
+        points: FloatArray,
+        steps: NDArray[np.int32],
+        at: Positions,
+        workpiece: TriSlices,
+        pending: SweptVolume,
+    ) -> NDArray[np.bool_]:
         votes = np.zeros(len(points), dtype=np.int8)
         if len(points):
             workpiece.count_votes(points, self._enough, votes)
         inside = votes >= self._enough
-        if inside.any():
-            pending.clear(points, inside, self._tolerance.depth_mm)
+        pending.clear(points, inside, self._tolerance.depth_mm, at.waiting[steps])
         return np.asarray(inside)
 
-    def _shares(self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: SweptVolume) -> FloatArray:
-        """Engaged share of each element, from where along the meridian the material ends."""
-        found = np.empty((len(self._cos_theta) * elements, 2), dtype=np.int64)
-        found = found[: kernels.transitions(self._status, elements, found)]
-        rows, columns = found[:, 0], found[:, 1]
-        middle = 0.5 * (self._edges.bounds_mm[:-1] + self._edges.bounds_mm[1:])
-        after = np.minimum(columns + 1, len(middle) - 1)
+    def _boundaries(
+        self, at: Positions, workpiece: TriSlices, pending: SweptVolume, status: NDArray[np.int8], scratch: Scratch
+    ) -> tuple[FloatArray, FloatArray]:
+        """Engaged share of each element, and where between two rows each changes between engaged and free."""
+        found = scratch.array("found", np.int32, 2 * status.size, 3)
+        split = kernels.transitions(status, found)
+        found = found[: kernels.turns(status, split, found)]
+        part = self._halve(found, split, at, workpiece, pending, status)
+        share = scratch.array("share", np.float64, *status.shape)
+        kernels.weights(status, self._edges.bounds_mm, found[:split], self._along(found[:split], part[:split]), share)
+        turn = scratch.array("turn", np.float64, *status.shape)
+        turn.fill(0.5)
+        turn[found[split:, 0], found[split:, 1], found[split:, 2]] = part[split:]
+        return share, turn
 
-        def points(part: FloatArray) -> FloatArray:
-            at = meridian(self._shape, middle[columns] + part * (middle[after] - middle[columns]))
-            x, y = at.radius_mm * self._cos_theta[rows], at.radius_mm * self._sin_theta[rows]
-            return np.column_stack((x, y, at.height_mm)) + tip
-
-        part = self._halve(points, found, workpiece, pending)
-        share = np.zeros((len(self._cos_theta), elements))
-        boundary = middle[columns] + part * (middle[after] - middle[columns])
-        kernels.weights(self._status, elements, self._edges.bounds_mm, found, boundary, share)
-        return share
-
-    def _turns(self, tip: FloatArray, elements: int, workpiece: TriSlices, pending: SweptVolume) -> FloatArray:
-        """Where between two rows an element changes between engaged and free, as a part of the way."""
-        found = np.empty((len(self._cos_theta) * elements, 2), dtype=np.int64)
-        found = found[: kernels.turns(self._status, elements, found)]
-        rows, columns = found[:, 0], found[:, 1]
-        step = 2.0 * math.pi / len(self._cos_theta)
-        radius, height = self._edges.radius_mm[columns], self._edges.z_mm[columns]
-
-        def points(part: FloatArray) -> FloatArray:
-            theta = (rows + part) * step
-            return np.column_stack((radius * np.cos(theta), radius * np.sin(theta), height)) + tip
-
-        turn = np.full((len(self._cos_theta), elements), 0.5)
-        turn[rows, columns] = self._halve(points, found, workpiece, pending)
-        return turn
+    def _along(self, found: NDArray[np.int32], part: FloatArray) -> FloatArray:
+        """Lengths along the meridian, a part of the way from the middle of an element to that of the next."""
+        first = self._middle[found[:, 2]]
+        return np.asarray(first + part * (self._middle[found[:, 2] + 1] - first))
 
     def _halve(
         self,
-        points: Callable[[FloatArray], FloatArray],
-        found: NDArray[np.int64],
+        found: NDArray[np.int32],
+        split: int,
+        at: Positions,
         workpiece: TriSlices,
         pending: SweptVolume,
+        status: NDArray[np.int8],
     ) -> FloatArray:
-        """Where, from 0 to 1, the material ends between the two elements of each pair in ``found``."""
+        """Where, from 0 to 1, the material ends between the two neighbours of each boundary in ``found``."""
         low, high = np.zeros(len(found)), np.ones(len(found))
-        if len(found) == 0:
-            return low
-        low_in = self._status[found[:, 0], found[:, 1]] == 1
-        for _ in range(_HALVINGS):
+        points = np.empty((len(found), 3))
+        first = status[found[:, 0], found[:, 1], found[:, 2]] == 1
+        for _ in range(_HALVINGS if len(found) else 0):
             part = 0.5 * (low + high)
-            same = self._in_material(points(part), workpiece, pending) == low_in
-            low, high = np.where(same, part, low), np.where(same, high, part)
+            on = meridian(self._shape, self._along(found[:split], part[:split]))
+            kernels.boundary_points(
+                at.tip_mm,
+                found,
+                split,
+                part,
+                on.radius_mm,
+                on.height_mm,
+                self._cos_theta,
+                self._sin_theta,
+                self._edges.radius_mm,
+                self._edges.z_mm,
+                points,
+            )
+            kernels.narrow(self._in_material(points, found[:, 0], at, workpiece, pending), first, low, high)
         return 0.5 * (low + high)
 
-    def _summary(
-        self,
-        share: FloatArray,
-        turn: FloatArray,
-        elements: int,
-        feed: FloatArray,
-        feed_mm_s: float,
-        feed_per_tooth_mm: float,
-    ) -> Engagement:
+    def _map(
+        self, at: Positions, s: int, status: NDArray[np.int8], share: FloatArray, turn: FloatArray
+    ) -> EngagementMap | None:
         out = np.empty(7)
         kernels.summarise(
             share,
             turn,
-            self._status,
-            elements,
-            feed,
+            status,
+            at.feed[s],
             self._cos_theta,
             self._sin_theta,
             self._edges.radius_mm,
@@ -211,13 +267,30 @@ class Engager:
             self._edges.length_mm,
             out,
         )
-        if out[kernels.ARC] == 0.0:
-            return NO_ENGAGEMENT
-        return Engagement(
-            axial_depth_mm=float(out[kernels.Z_HIGH] - out[kernels.Z_LOW]),
-            radial_width_mm=float(out[kernels.SIDE_HIGH] - out[kernels.SIDE_LOW]),
-            arc_rad=float(out[kernels.ARC] * 2.0 * math.pi / len(self._cos_theta)),
-            chip_thickness_mm=float(out[kernels.NF_MAX] * feed_per_tooth_mm),
-            removal_rate_mm3_s=float(out[kernels.FRONT_AREA] * feed_mm_s),
+        z_low, z_high, side_low, side_high, arc, front_area, nf_max = out.tolist()
+        if arc == 0.0:
+            return None
+        summary = Engagement(
+            axial_depth_mm=z_high - z_low,
+            radial_width_mm=side_high - side_low,
+            arc_rad=arc * 2.0 * math.pi / len(self._cos_theta),
+            chip_thickness_mm=nf_max * float(at.feed_per_tooth_mm[s]),
+            removal_rate_mm3_s=front_area * float(at.feed_mm_s[s]),
             cutting=True,
         )
+        return EngagementMap(share, turn, summary)
+
+
+class Scratch:
+    """Memory that one thread uses again and again."""
+
+    def __init__(self) -> None:
+        self._arrays: dict[str, NDArray[Any]] = {}
+
+    def array(self, name: str, dtype: type[np.generic], *shape: int) -> NDArray[Any]:
+        """An array of that name, type and shape; what is in it is left over from its last use."""
+        size = math.prod(shape)
+        held = self._arrays.get(name)
+        if held is None or held.size < size:
+            held = self._arrays[name] = np.empty(size, dtype=dtype)
+        return held[:size].reshape(shape)

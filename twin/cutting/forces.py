@@ -32,11 +32,31 @@ class ForceModel:
         self._coefficients = coefficients.values
         self._tolerance = tolerance
         self._angle = edges.pitch_rad[:, None] + edges.lag_rad[None, :]
-        self._radial_error = edges.runout_mm * np.cos(edges.runout_rad + self._angle)
         self._cos_kappa, self._sin_kappa = np.cos(edges.kappa_rad), np.sin(edges.kappa_rad)
+        theta = np.arange(rows) * (2.0 * math.pi / rows)
+        self._cos_row, self._sin_row = np.cos(theta), np.sin(theta)
         even = np.allclose(np.diff(edges.pitch_rad), 2.0 * math.pi / edges.teeth, atol=1e-12)
-        alike = even and edges.runout_mm == 0.0 and rows % edges.teeth == 0
-        self._period = rows // edges.teeth if alike else rows
+        alike = bool(even) and edges.runout_mm == 0.0
+        self._period = rows // edges.teeth if alike and rows % edges.teeth == 0 else rows
+        self._feed_part, self._error = self._earlier_teeth(1 if alike else edges.teeth)
+
+    def _earlier_teeth(self, backs: int) -> tuple[FloatArray, FloatArray]:
+        """What the teeth before each tooth left: part of the feed per revolution since then, and runout.
+
+        Returns:
+            Shapes (teeth, backs) and (teeth, backs, elements): part of a revolution between a tooth and the one so
+            many before it, and how much farther out its elements are, mm.
+        """
+        edges = self._edges
+        radial = edges.runout_mm * np.cos(edges.runout_rad + self._angle)
+        part, error = np.empty((edges.teeth, backs)), np.empty((edges.teeth, backs, len(edges.z_mm)))
+        for m in range(edges.teeth):
+            for b in range(backs):
+                other = m - b - 1
+                gap = edges.pitch_rad[m] - edges.pitch_rad[other] + (2.0 * math.pi if other < 0 else 0.0)
+                part[m, b] = gap / (2.0 * math.pi)
+                error[m, b] = radial[m] - radial[other]
+        return part, error
 
     def forces(
         self,
@@ -49,7 +69,7 @@ class ForceModel:
         """Forces and torque at evenly spaced spindle angles.
 
         Args:
-            spindle_rad: shape (n,), signed spindle angles, one map row apart.
+            spindle_rad: shape (n,), signed spindle angles, one map row apart in the sense of rotation.
             sense: +1 for M3, -1 for M4.
             feed: unit feed direction.
             engagement: the map that holds at all of these angles.
@@ -60,23 +80,25 @@ class ForceModel:
         n = len(spindle_rad)
         computed = min(n, self._period)
         out = np.empty((computed, 4))
-        kernels.sum_forces(
-            spindle_rad[:computed],
-            float(sense),
-            feed,
-            feed_per_rev_mm,
-            engagement.share,
-            engagement.turn,
-            engagement.elements,
-            self._angle,
-            self._edges.pitch_rad,
-            self._radial_error,
-            self._edges.radius_mm,
-            self._cos_kappa,
-            self._sin_kappa,
-            self._edges.length_mm,
-            self._coefficients,
-            self._tolerance.chip * feed_per_rev_mm / self._edges.teeth,
-            out,
-        )
+        if computed:
+            kernels.sum_forces(
+                float(spindle_rad[0]),
+                computed,
+                float(sense),
+                feed,
+                self._feed_part * feed_per_rev_mm,
+                engagement.share,
+                engagement.turn,
+                self._angle,
+                self._error,
+                self._edges.radius_mm,
+                self._cos_kappa,
+                self._sin_kappa,
+                self._edges.length_mm,
+                self._cos_row,
+                self._sin_row,
+                self._coefficients,
+                self._tolerance.chip * feed_per_rev_mm / self._edges.teeth,
+                out,
+            )
         return out if computed == n else out[np.arange(n) % self._period]

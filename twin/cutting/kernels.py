@@ -21,8 +21,8 @@ Z_LOW, Z_HIGH, SIDE_LOW, SIDE_HIGH, ARC, FRONT_AREA, NF_MAX = range(7)
 
 @njit(cache=True, nogil=True)
 def front_points(
-    tip: FloatArray,
-    feed: FloatArray,
+    tips: FloatArray,
+    feeds: FloatArray,
     cos_theta: FloatArray,
     sin_theta: FloatArray,
     radius: FloatArray,
@@ -33,87 +33,144 @@ def front_points(
     gate: FloatArray,
     status: NDArray[np.int8],
     points: FloatArray,
-    places: NDArray[np.int64],
+    places: NDArray[np.int32],
 ) -> int:
-    """Midpoints of the edge elements, at every angle of the map, whose normal looks along the feed.
+    """Midpoints of the edge elements, at every angle of the maps, whose normal looks along the feed.
 
     Args:
-        tip: tool tip, mm.
-        feed: unit feed direction.
+        tips, feeds: shape (steps, 3): tool tips in mm and unit feed directions.
         elements: how many of the elements, from the lowest, are asked for.
         gate: shape (elements or more,), least n.f of a front point of each element.
-        status: shape (rows, elements or more): set to -1 behind the gate, 0 before it.
-        points, places: shapes (n, 3) and (n, 2): the points and their row and column in the map.
+        status: shape (steps, rows, elements): set to -1 behind the gate, 0 before it.
+        points, places: shapes (n, 3): the points and their step, row and column in the maps.
 
     Returns:
         Number of front points.
     """
     n = 0
-    for j in range(len(cos_theta)):
-        across = cos_theta[j] * feed[0] + sin_theta[j] * feed[1]
-        for i in range(elements):
-            if across * sin_kappa[i] - feed[2] * cos_kappa[i] > gate[i]:
-                status[j, i] = 0
-                points[n, 0] = tip[0] + radius[i] * cos_theta[j]
-                points[n, 1] = tip[1] + radius[i] * sin_theta[j]
-                points[n, 2] = tip[2] + height[i]
-                places[n, 0] = j
-                places[n, 1] = i
-                n += 1
-            else:
-                status[j, i] = -1
+    for s in range(len(tips)):
+        x, y, z = tips[s, 0], tips[s, 1], tips[s, 2]
+        down = feeds[s, 2]
+        for j in range(len(cos_theta)):
+            across = cos_theta[j] * feeds[s, 0] + sin_theta[j] * feeds[s, 1]
+            for i in range(elements):
+                if across * sin_kappa[i] - down * cos_kappa[i] > gate[i]:
+                    status[s, j, i] = 0
+                    points[n, 0] = x + radius[i] * cos_theta[j]
+                    points[n, 1] = y + radius[i] * sin_theta[j]
+                    points[n, 2] = z + height[i]
+                    places[n, 0] = s
+                    places[n, 1] = j
+                    places[n, 2] = i
+                    n += 1
+                else:
+                    status[s, j, i] = -1
     return n
 
 
 @njit(cache=True, nogil=True)
-def mark(places: NDArray[np.int64], inside: NDArray[np.bool_], status: NDArray[np.int8]) -> None:
-    """Write what was found at the front points into the status map: 1 engaged, 0 not."""
+def mark(
+    places: NDArray[np.int32], inside: NDArray[np.bool_], status: NDArray[np.int8], engaged: NDArray[np.bool_]
+) -> None:
+    """Write what was found at the front points into the status maps: 1 engaged, 0 not.
+
+    Args:
+        engaged: shape (steps,): set where a step has an engaged point.
+    """
     for n in range(len(places)):
-        status[places[n, 0], places[n, 1]] = 1 if inside[n] else 0
+        if inside[n]:
+            status[places[n, 0], places[n, 1], places[n, 2]] = 1
+            engaged[places[n, 0]] = True
 
 
 @njit(cache=True, nogil=True)
-def transitions(status: NDArray[np.int8], elements: int, places: NDArray[np.int64]) -> int:
-    """Neighbouring front elements at one angle of which one is engaged: (row, lower column); returns their number."""
+def transitions(status: NDArray[np.int8], places: NDArray[np.int32]) -> int:
+    """Neighbouring front elements at one angle of which one is engaged: (step, row, lower column); their number."""
+    steps, rows, elements = status.shape
     n = 0
-    for j in range(len(status)):
-        for i in range(elements - 1):
-            if status[j, i] >= 0 and status[j, i + 1] >= 0 and status[j, i] != status[j, i + 1]:
-                places[n, 0] = j
-                places[n, 1] = i
-                n += 1
+    for s in range(steps):
+        for j in range(rows):
+            for i in range(elements - 1):
+                if status[s, j, i] + status[s, j, i + 1] == 1 and status[s, j, i] * status[s, j, i + 1] == 0:
+                    places[n, 0] = s
+                    places[n, 1] = j
+                    places[n, 2] = i
+                    n += 1
     return n
 
 
 @njit(cache=True, nogil=True)
-def turns(status: NDArray[np.int8], elements: int, places: NDArray[np.int64]) -> int:
-    """Elements engaged at one of two neighbouring angles only: (first row, column); returns their number."""
-    n = 0
-    rows = len(status)
-    for j in range(rows):
-        after = (j + 1) % rows
-        for i in range(elements):
-            if status[j, i] >= 0 and status[after, i] >= 0 and status[j, i] != status[after, i]:
-                places[n, 0] = j
-                places[n, 1] = i
-                n += 1
+def turns(status: NDArray[np.int8], first: int, places: NDArray[np.int32]) -> int:
+    """Elements engaged at one of two neighbouring angles only: (step, first row, column), written from ``first`` on.
+
+    Returns:
+        Where they end in ``places``.
+    """
+    steps, rows, elements = status.shape
+    n = first
+    for s in range(steps):
+        for j in range(rows):
+            after = j + 1 if j + 1 < rows else 0
+            for i in range(elements):
+                if status[s, j, i] + status[s, after, i] == 1 and status[s, j, i] * status[s, after, i] == 0:
+                    places[n, 0] = s
+                    places[n, 1] = j
+                    places[n, 2] = i
+                    n += 1
     return n
 
 
 @njit(cache=True, nogil=True)
-def _share_at(first: float, second: float, part: float, turn: float) -> float:
-    """Engaged share between two rows of the map, ``part`` of the way from the first to the second."""
-    if first + second == 1.0 and first * second == 0.0:
-        return first if part < turn else second
-    return (1.0 - part) * first + part * second
+def boundary_points(
+    tips: FloatArray,
+    places: NDArray[np.int32],
+    split: int,
+    part: FloatArray,
+    at_radius: FloatArray,
+    at_height: FloatArray,
+    cos_theta: FloatArray,
+    sin_theta: FloatArray,
+    radius: FloatArray,
+    height: FloatArray,
+    points: FloatArray,
+) -> None:
+    """Points between two neighbours of a map, of which one is engaged.
+
+    Args:
+        places: shape (n, 3): up to ``split`` `transitions`, then `turns`.
+        part: shape (n,), how far from the first neighbour to the second.
+        at_radius, at_height: shape (split,): radius and height of the points on the meridian of the transitions.
+        points: shape (n, 3).
+    """
+    step = 2.0 * math.pi / len(cos_theta)
+    for n in range(len(places)):
+        s, j, i = places[n, 0], places[n, 1], places[n, 2]
+        if n < split:
+            r, z, cos_t, sin_t = at_radius[n], at_height[n], cos_theta[j], sin_theta[j]
+        else:
+            theta = (j + part[n]) * step
+            r, z, cos_t, sin_t = radius[i], height[i], math.cos(theta), math.sin(theta)
+        points[n, 0] = tips[s, 0] + r * cos_t
+        points[n, 1] = tips[s, 1] + r * sin_t
+        points[n, 2] = tips[s, 2] + z
+
+
+@njit(cache=True, nogil=True)
+def narrow(inside: NDArray[np.bool_], first: NDArray[np.bool_], low: FloatArray, high: FloatArray) -> None:
+    """One halving: the boundary lies behind the middle where that is like the first neighbour, else before it."""
+    for n in range(len(low)):
+        middle = 0.5 * (low[n] + high[n])
+        if inside[n] == first[n]:
+            low[n] = middle
+        else:
+            high[n] = middle
 
 
 @njit(cache=True, nogil=True)
 def weights(
     status: NDArray[np.int8],
-    elements: int,
     bounds: FloatArray,
-    places: NDArray[np.int64],
+    places: NDArray[np.int32],
     boundary: FloatArray,
     share: FloatArray,
 ) -> None:
@@ -125,27 +182,31 @@ def weights(
     Args:
         bounds: shape (n + 1,), ends of the elements along the meridian.
         places, boundary: the transitions and where along the meridian each one lies.
+        share: shape (steps, rows, elements), filled.
     """
-    rows = len(status)
-    for j in range(rows):
-        for i in range(elements):
-            share[j, i] = 1.0 if status[j, i] == 1 else 0.0
+    steps, rows, elements = status.shape
+    for s in range(steps):
+        for j in range(rows):
+            for i in range(elements):
+                share[s, j, i] = 1.0 if status[s, j, i] == 1 else 0.0
     for n in range(len(places)):
-        j, i = places[n, 0], places[n, 1]
+        s, j, i = places[n, 0], places[n, 1], places[n, 2]
         off = boundary[n] - bounds[i + 1]
-        sign = 1.0 if status[j, i] == 1 else -1.0
+        sign = 1.0 if status[s, j, i] == 1 else -1.0
         if off < 0.0:
-            share[j, i] += sign * off / (bounds[i + 1] - bounds[i])
+            share[s, j, i] += sign * off / (bounds[i + 1] - bounds[i])
         else:
-            share[j, i + 1] += sign * off / (bounds[i + 2] - bounds[i + 1])
-    for j in range(rows):
-        for i in range(elements):
-            if status[j, i] < 0:
-                before, after = (j - 1) % rows, (j + 1) % rows
-                if status[before, i] >= 0:
-                    share[j, i] = share[before, i]
-                elif status[after, i] >= 0:
-                    share[j, i] = share[after, i]
+            share[s, j, i + 1] += sign * off / (bounds[i + 2] - bounds[i + 1])
+    for s in range(steps):
+        for j in range(rows):
+            before = j - 1 if j > 0 else rows - 1
+            after = j + 1 if j + 1 < rows else 0
+            for i in range(elements):
+                if status[s, j, i] < 0:
+                    if status[s, before, i] >= 0:
+                        share[s, j, i] = share[s, before, i]
+                    elif status[s, after, i] >= 0:
+                        share[s, j, i] = share[s, after, i]
 
 
 @njit(cache=True, nogil=True)
@@ -153,7 +214,6 @@ def summarise(
     share: FloatArray,
     turn: FloatArray,
     status: NDArray[np.int8],
-    elements: int,
     feed: FloatArray,
     cos_theta: FloatArray,
     sin_theta: FloatArray,
@@ -172,7 +232,7 @@ def summarise(
     """
     out[Z_LOW], out[Z_HIGH], out[SIDE_LOW], out[SIDE_HIGH] = math.inf, -math.inf, math.inf, -math.inf
     out[ARC], out[FRONT_AREA], out[NF_MAX] = 0.0, 0.0, 0.0
-    rows = len(share)
+    rows, elements = share.shape
     step = 2.0 * math.pi / rows
     plan = math.hypot(feed[0], feed[1])
     for j in range(rows):
@@ -215,74 +275,90 @@ def summarise(
 
 @njit(cache=True, nogil=True)
 def sum_forces(
-    spindle: FloatArray,
+    first_rad: float,
+    samples: int,
     sense: float,
     feed: FloatArray,
-    feed_per_rev: float,
+    chip_per_back: FloatArray,
     share: FloatArray,
     turn: FloatArray,
-    elements: int,
     angle: FloatArray,
-    pitch: FloatArray,
-    radial_error: FloatArray,
+    error_per_back: FloatArray,
     radius: FloatArray,
     cos_kappa: FloatArray,
     sin_kappa: FloatArray,
     length: FloatArray,
+    cos_row: FloatArray,
+    sin_row: FloatArray,
     coefficients: FloatArray,
     least_chip: float,
     out: FloatArray,
 ) -> None:
     """Force on the tool and torque at spindle angles, summed over teeth and elements (tri-slice paper, eq. 2 to 5).
 
+    Samples are one row of the map apart, so an element of a tooth stands at the same part of the way between two rows
+    in all of them, one row farther in each: the map is gathered with a shift.
+
     Args:
-        spindle: shape (n,), signed spindle angles.
+        first_rad: signed spindle angle of the first sample; the others are one row of the map apart.
+        samples: how many.
         sense: +1 for M3, -1 for M4.
-        feed_per_rev: feed per revolution, mm.
+        chip_per_back: shape (teeth, backs), feed from the tooth that passed so many teeth before, mm.
         share, turn: the engagement map, shape (rows, elements).
         angle: shape (teeth, elements), angle of each element behind the tip of tooth 0.
-        pitch: shape (teeth,), angle of each tooth behind tooth 0.
-        radial_error: shape (teeth, elements), how far the runout moves each element outwards, mm.
+        error_per_back: shape (teeth, backs, elements), how much farther out an element is than that of the tooth
+            before, by runout, mm.
+        cos_row, sin_row: shape (rows,), cosine and sine of the rows' angles.
         coefficients: Ktc, Kte, Krc, Kre, Kac, Kae.
         least_chip: chips thinner than this are none, mm.
-        out: shape (n, 4): Fx, Fy, Fz in N and torque in N mm.
+        out: shape (samples, 4): Fx, Fy, Fz in N and torque in N mm.
     """
-    rows = len(share)
-    teeth = len(pitch)
+    rows, elements = share.shape
+    teeth, backs = chip_per_back.shape
     per_rad = rows / (2.0 * math.pi)
-    round_rad = 2.0 * math.pi
-    for s in range(len(spindle)):
-        fx, fy, fz, torque = 0.0, 0.0, 0.0, 0.0
+    for s in range(samples):
+        out[s, 0], out[s, 1], out[s, 2], out[s, 3] = 0.0, 0.0, 0.0, 0.0
+    for i in range(elements):
+        any_share = False
+        for j in range(rows):
+            if share[j, i] > 0.0:
+                any_share = True
+                break
+        if not any_share:
+            continue
+        cos_k, sin_k = cos_kappa[i], sin_kappa[i]
         for m in range(teeth):
-            for i in range(elements):
-                theta = -spindle[s] + sense * angle[m, i]
-                place = theta * per_rad
-                whole = math.floor(place)
-                part = place - whole
-                row = int(whole) % rows
+            theta = -first_rad + sense * angle[m, i]
+            place = theta * per_rad
+            whole = math.floor(place)
+            part = place - whole
+            row = int(whole) % rows
+            cos_0, sin_0 = math.cos(theta), math.sin(theta)
+            turned = 0
+            for s in range(samples):
                 after = row + 1 if row + 1 < rows else 0
-                engaged = _share_at(share[row, i], share[after, i], part, turn[row, i])
-                if engaged <= 0.0:
-                    continue
-                cos_t, sin_t = math.cos(theta), math.sin(theta)
-                nf = (cos_t * feed[0] + sin_t * feed[1]) * sin_kappa[i] - feed[2] * cos_kappa[i]
-                chip = math.inf
-                for back in range(1, teeth + 1):
-                    other = m - back
-                    gap = pitch[m] - pitch[other]
-                    if other < 0:
-                        gap += round_rad
-                    error = radial_error[m, i] - radial_error[other, i]
-                    chip = min(chip, feed_per_rev * gap / round_rad * nf + error * sin_kappa[i])
-                if chip <= least_chip:
-                    continue
-                db = engaged * length[i]
-                tangential = (coefficients[0] * chip + coefficients[1]) * db
-                radial = (coefficients[2] * chip + coefficients[3]) * db
-                axial = (coefficients[4] * chip + coefficients[5]) * db
-                inward = radial * sin_kappa[i] + axial * cos_kappa[i]
-                fx -= sense * tangential * sin_t + inward * cos_t
-                fy += sense * tangential * cos_t - inward * sin_t
-                fz += radial * cos_kappa[i] - axial * sin_kappa[i]
-                torque += tangential * radius[i]
-        out[s, 0], out[s, 1], out[s, 2], out[s, 3] = fx, fy, fz, torque
+                a, b = share[row, i], share[after, i]
+                if a + b > 0.0:
+                    if a + b == 1.0 and a * b == 0.0:
+                        engaged = a if part < turn[row, i] else b
+                    else:
+                        engaged = (1.0 - part) * a + part * b
+                    cos_s, sin_s = cos_row[turned], -sense * sin_row[turned]
+                    cos_t = cos_0 * cos_s - sin_0 * sin_s
+                    sin_t = sin_0 * cos_s + cos_0 * sin_s
+                    nf = (cos_t * feed[0] + sin_t * feed[1]) * sin_k - feed[2] * cos_k
+                    chip = math.inf
+                    for back in range(backs):
+                        chip = min(chip, chip_per_back[m, back] * nf + error_per_back[m, back, i] * sin_k)
+                    if engaged > 0.0 and chip > least_chip:
+                        db = engaged * length[i]
+                        tangential = (coefficients[0] * chip + coefficients[1]) * db
+                        radial = (coefficients[2] * chip + coefficients[3]) * db
+                        axial = (coefficients[4] * chip + coefficients[5]) * db
+                        inward = radial * sin_k + axial * cos_k
+                        out[s, 0] -= sense * tangential * sin_t + inward * cos_t
+                        out[s, 1] += sense * tangential * cos_t - inward * sin_t
+                        out[s, 2] += radial * cos_k - axial * sin_k
+                        out[s, 3] += tangential * radius[i]
+                turned = turned + 1 if turned + 1 < rows else 0
+                row = (row - int(sense)) % rows

@@ -441,6 +441,7 @@ def section_nodes(
 def outside_sweeps(
     points: FloatArray,
     candidates: NDArray[np.bool_],
+    counts: NDArray[np.int64],
     shapes: FloatArray,
     starts: FloatArray,
     moves: FloatArray,
@@ -451,6 +452,7 @@ def outside_sweeps(
     Args:
         points: shape (n, 3), mm.
         candidates: shape (n,), changed in place.
+        counts: shape (n,), how many of the sweeps, from the first, count for each point.
         shapes, starts, moves: shapes (m, 8), (m, 3), (m, 3): each sweep's tool shape, start and motion of the tip.
     """
     for i in range(len(points)):
@@ -459,10 +461,15 @@ def outside_sweeps(
         x = points[i, 0]
         y = points[i, 1]
         z = points[i, 2]
-        for j in range(len(starts) - 1, -1, -1):
+        for j in range(counts[i] - 1, -1, -1):
             s = starts[j]
             d = moves[j]
             if z < s[2] + min(0.0, d[2]):
+                continue
+            r = shapes[j, 6]
+            if x < s[0] + min(0.0, d[0]) - r or x > s[0] + max(0.0, d[0]) + r:
+                continue
+            if y < s[1] + min(0.0, d[1]) - r or y > s[1] + max(0.0, d[1]) + r:
                 continue
             if z < highest(shapes[j], s[0], d[0], s[1], d[1], s[2], d[2], x, y):
                 if z > lowest(shapes[j], s[0], d[0], s[1], d[1], s[2], d[2], x, y) + depth:

@@ -131,7 +131,24 @@ class SweptVolume:
         self._starts = np.array([s.start_mm for s in sweeps])
         self._moves = np.array([s.end_mm - s.start_mm for s in sweeps])
 
-    def clear(self, points_mm: FloatArray, in_material: NDArray[np.bool_], depth_mm: float) -> None:
-        """Clear the flags of the points that lie deeper than ``depth_mm`` inside one of the sweeps, in place."""
+    def __len__(self) -> int:
+        return len(self._starts)
+
+    def clear(
+        self,
+        points_mm: FloatArray,
+        in_material: NDArray[np.bool_],
+        depth_mm: float,
+        counts: NDArray[np.int64] | None = None,
+    ) -> None:
+        """Clear the flags of the points that lie deeper than ``depth_mm`` inside one of the sweeps, in place.
+
+        Args:
+            counts: shape (n,), how many of the sweeps, from the first, each point is asked against; None for all.
+        """
         if len(self._starts):
-            kernels.outside_sweeps(points_mm, in_material, self._parameters, self._starts, self._moves, depth_mm)
+            if counts is None:
+                counts = np.full(len(points_mm), len(self._starts), dtype=np.int64)
+            kernels.outside_sweeps(
+                points_mm, in_material, counts, self._parameters, self._starts, self._moves, depth_mm
+            )

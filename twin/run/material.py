@@ -19,6 +19,8 @@ from twin.workpiece.trislice import TriSlices
 #: Sweeps wait until the tool has gone on by this many slice pitches, or until this many are waiting.
 PENDING_PITCHES = 10.0
 PENDING_SWEEPS = 48
+#: A sweep this near to a motion's line lies on it, mm.
+SAME_LINE_MM = 1e-9
 
 
 #: Kind of a collision and the volume of material in its way.
@@ -32,19 +34,22 @@ class Material:
     meanwhile: near the tool, where the surface has just been made, engagement does not depend on the slices' pitch.
     """
 
-    def __init__(self, workpiece: TriSlices, tolerance: Tolerance) -> None:
+    def __init__(self, workpiece: TriSlices, tolerance: Tolerance, threads: int) -> None:
         self.workpiece = workpiece
         self._tolerance = tolerance
-        self._removal = Removal(workpiece, tolerance.chord_mm)
+        self._removal = Removal(workpiece, tolerance.chord_mm, threads)
         self._waiting: deque[tuple[Sweep, int]] = deque()
         self._window_mm = PENDING_PITCHES * float(np.max(workpiece.pitch_mm))
         self.removed_mm3: dict[int, float] = {}
         self.changed: list[tuple[FloatArray, FloatArray]] = []
 
-    @property
-    def pending(self) -> SweptVolume:
-        """What is not yet subtracted from the slices."""
-        return SweptVolume([sweep for sweep, _ in self._waiting])
+    def pending(self, tool: int, start_mm: FloatArray, feed: FloatArray) -> SweptVolume:
+        """What is not yet subtracted from the slices, and can have reached the front of a tool on a straight motion.
+
+        A sweep of the same tool that lies on the motion's line, behind its start, cannot: a convex tool there lies
+        behind the plane that touches any front point.
+        """
+        return SweptVolume([sweep for sweep, by in self._waiting if by != tool or not _behind(sweep, start_mm, feed)])
 
     def near(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> bool:
         """Whether the box of a motion of any of a tool's bodies meets the stock's box."""
@@ -113,3 +118,11 @@ class Material:
     def close(self) -> None:
         """Let worker threads go."""
         self._removal.close()
+
+
+def _behind(sweep: Sweep, start_mm: FloatArray, feed: FloatArray) -> bool:
+    """Whether a straight sweep lies on the line of a motion, behind its start."""
+    behind = np.array([start_mm - sweep.start_mm, start_mm - sweep.end_mm])
+    along = behind @ feed
+    aside = np.abs(behind - along[:, None] * feed).max()
+    return bool(aside <= SAME_LINE_MM and along.min() >= -SAME_LINE_MM)

@@ -194,7 +194,7 @@ def test_an_orthonormal_frame_turns_the_forces() -> None:
     found = pass_.engage(0.0)
     only = np.zeros_like(found.share)
     only[:, 3] = found.share[:, 3]
-    single = type(found)(only, found.turn, found.elements, found.summary)
+    single = type(found)(only, found.turn, found.summary)
     one_tooth = cutting_edges(tool_shape("ball", 8.0, 6.0), teeth=1, helix_deg=30.0, axial_step_mm=0.1)
     model = ForceModel(one_tooth, COEFFICIENTS, 360, pass_.tolerance)
     load = model.forces(REVOLUTION, 1, pass_.feed, 0.1, single)
