@@ -77,13 +77,11 @@ class ForceModel:
         Returns:
             Shape (n, 4): Fx, Fy, Fz on the tool in N, torque in N mm.
         """
-        n = len(spindle_rad)
-        computed = min(n, self._period)
-        out = np.empty((computed, 4))
-        if computed:
+        out = np.empty((len(spindle_rad), 4))
+        if len(spindle_rad):
             kernels.sum_forces(
                 float(spindle_rad[0]),
-                computed,
+                self._period,
                 float(sense),
                 feed,
                 self._feed_part * feed_per_rev_mm,
@@ -101,4 +99,4 @@ class ForceModel:
                 self._tolerance.chip * feed_per_rev_mm / self._edges.teeth,
                 out,
             )
-        return out if computed == n else out[np.arange(n) % self._period]
+        return out

@@ -276,7 +276,7 @@ def summarise(
 @njit(cache=True, nogil=True)
 def sum_forces(
     first_rad: float,
-    samples: int,
+    period: int,
     sense: float,
     feed: FloatArray,
     chip_per_back: FloatArray,
@@ -301,7 +301,7 @@ def sum_forces(
 
     Args:
         first_rad: signed spindle angle of the first sample; the others are one row of the map apart.
-        samples: how many.
+        period: number of samples after which they repeat.
         sense: +1 for M3, -1 for M4.
         chip_per_back: shape (teeth, backs), feed from the tooth that passed so many teeth before, mm.
         share, turn: the engagement map, shape (rows, elements).
@@ -315,17 +315,22 @@ def sum_forces(
     """
     rows, elements = share.shape
     teeth, backs = chip_per_back.shape
+    samples = len(out)
+    computed = min(samples, period)
+    shift = 1 if sense > 0.0 else -1
     per_rad = rows / (2.0 * math.pi)
-    for s in range(samples):
+    column = np.empty(rows + 1)
+    for s in range(computed):
         out[s, 0], out[s, 1], out[s, 2], out[s, 3] = 0.0, 0.0, 0.0, 0.0
     for i in range(elements):
         any_share = False
         for j in range(rows):
-            if share[j, i] > 0.0:
+            column[j] = share[j, i]
+            if column[j] > 0.0:
                 any_share = True
-                break
         if not any_share:
             continue
+        column[rows] = column[0]
         cos_k, sin_k = cos_kappa[i], sin_kappa[i]
         for m in range(teeth):
             theta = -first_rad + sense * angle[m, i]
@@ -335,9 +340,8 @@ def sum_forces(
             row = int(whole) % rows
             cos_0, sin_0 = math.cos(theta), math.sin(theta)
             turned = 0
-            for s in range(samples):
-                after = row + 1 if row + 1 < rows else 0
-                a, b = share[row, i], share[after, i]
+            for s in range(computed):
+                a, b = column[row], column[row + 1]
                 if a + b > 0.0:
                     if a + b == 1.0 and a * b == 0.0:
                         engaged = a if part < turn[row, i] else b
@@ -347,8 +351,8 @@ def sum_forces(
                     cos_t = cos_0 * cos_s - sin_0 * sin_s
                     sin_t = sin_0 * cos_s + cos_0 * sin_s
                     nf = (cos_t * feed[0] + sin_t * feed[1]) * sin_k - feed[2] * cos_k
-                    chip = math.inf
-                    for back in range(backs):
+                    chip = chip_per_back[m, 0] * nf + error_per_back[m, 0, i] * sin_k
+                    for back in range(1, backs):
                         chip = min(chip, chip_per_back[m, back] * nf + error_per_back[m, back, i] * sin_k)
                     if engaged > 0.0 and chip > least_chip:
                         db = engaged * length[i]
@@ -361,4 +365,11 @@ def sum_forces(
                         out[s, 2] += radial * cos_k - axial * sin_k
                         out[s, 3] += tangential * radius[i]
                 turned = turned + 1 if turned + 1 < rows else 0
-                row = (row - int(sense)) % rows
+                row -= shift
+                if row < 0:
+                    row += rows
+                elif row >= rows:
+                    row -= rows
+    for s in range(computed, samples):
+        for c in range(4):
+            out[s, c] = out[s - period, c]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -22,7 +23,8 @@ _FREE_LISTS = 40
 class CellFamily:
     """Parallel planes of one direction as column cells.
 
-    A plane is built from its region when it is first touched; memory is proportional to what was touched.
+    A plane is built from its region when it is first touched, planes of one and the same region only once, and a
+    part of a plane gets cells of its own when it is first cut; so memory grows with what was touched.
 
     Args:
         regions: material on each plane at the start.
@@ -41,9 +43,13 @@ class CellFamily:
         self.columns = max(1, math.ceil((high_uv_mm[0] - low_uv_mm[0]) / cell_mm * (1.0 - 1e-12)))
         self.tiles = max(1, math.ceil((high_uv_mm[1] - low_uv_mm[1]) / cell_mm * (1.0 - 1e-12)))
         self.area_mm2 = np.array([r.area_mm2 for r in regions], dtype=np.float64)
-        self.base: NDArray[np.int64] = np.full(len(regions), -1, dtype=np.int64)
+        shape = (len(regions), self.columns, math.ceil(self.tiles / kernels.PAGE_TILES))
+        self.page: NDArray[np.int64] = np.full(shape, -1, dtype=np.int64)
+        self._own: NDArray[np.bool_] = np.zeros(shape, dtype=np.bool_)
         self._regions = regions
-        self._used = 0
+        self._alike = Counter(map(id, regions))
+        self._templates: dict[int, NDArray[np.int64]] = {}
+        self._used: NDArray[np.int64] = np.zeros(1, dtype=np.int64)
         self.state: NDArray[np.int8] = np.zeros(0, dtype=np.int8)
         self.start: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
         self.size: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
@@ -62,15 +68,26 @@ class CellFamily:
     def ensure(self, first: int, last: int) -> None:
         """Build the planes ``first`` to ``last - 1``, as far as they exist, that are not built yet."""
         first = max(0, first)
-        for k in np.flatnonzero(self.base[first:last] < 0) if last > first else ():
+        for k in np.flatnonzero(self.page[first:last, 0, 0] < 0) if last > first else ():
             self._build(first + int(k))
 
     def _build(self, k: int) -> None:
-        cells = self.columns * self.tiles
-        place = self._used
+        region = id(self._regions[k])
+        if region not in self._templates:
+            pages = self._fill(k)
+            if self._alike[region] == 1:
+                self.page[k], self._own[k] = pages, True
+                return
+            self._templates[region] = pages
+        self.page[k] = self._templates[region]
+
+    def _fill(self, k: int) -> NDArray[np.int64]:
+        """New cells for a plane's region; returns the first of each page."""
+        cells = self.page[k].size * kernels.PAGE_TILES
+        place = int(self._used[0])
         if place + cells > len(self.state):
             self._grow_cells(place + cells)
-        self._used += cells
+        self._used[0] += cells
         edges = _ring_edges(self._regions[k])
         cursor = np.zeros(1, dtype=np.int64)
         while True:
@@ -89,7 +106,7 @@ class CellFamily:
             if answer == kernels.DONE:
                 break
             self._make_room(answer)
-        self.base[k] = place
+        return np.asarray(place + np.arange(0, cells, kernels.PAGE_TILES).reshape(self.page.shape[1:]))
 
     def _grow_cells(self, needed: int) -> None:
         total = max(needed, 2 * len(self.state))
@@ -104,6 +121,8 @@ class CellFamily:
             pool = np.empty((2 * len(self.pool), 5))
             pool[: len(self.pool)] = self.pool
             self.pool = pool
+        elif answer == kernels.CELLS_FULL:
+            self._grow_cells(len(self.state) + kernels.PAGE_TILES)
         else:
             self._make_scratch(2 * len(self._out))
 
@@ -118,9 +137,10 @@ class CellFamily:
                 strips.offsets,
                 strips.nodes,
                 self.grid,
-                self.columns,
                 self.tiles,
-                self.base,
+                self.page,
+                self._own,
+                self._used,
                 *(self.state, self.start, self.size, self.room, self.pool, self._free),
                 self._segments,
                 self._toggles[0],
@@ -141,30 +161,32 @@ class CellFamily:
         self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> lines.LineEnds:
         """Lines through planes, as `SliceStore.line_ends` gives them."""
-        for k in planes[self.base[planes] < 0]:
+        for k in planes[self.page[planes, 0, 0] < 0]:
             self.ensure(int(k), int(k) + 1)
         kernel = line_kernels.cell_v_lines if fixed else line_kernels.cell_u_lines
         return lines.collect(
             len(planes) * len(at_mm),
             lambda offsets, ends, slopes: kernel(
-                *(at_mm, window_mm, lines.MERGE_MM, self.base[planes], self.grid, self.columns, self.tiles),
+                *(at_mm, window_mm, lines.MERGE_MM, self.page[planes], self.grid, self.tiles),
                 *(self.state, self.start, self.size, self.pool, offsets, ends, slopes),
             ),
         )
 
     def region(self, k: int) -> Region:
         """Material on a plane as rings."""
-        if self.base[k] < 0:
+        if self.page[k, 0, 0] < 0:
             return self._regions[k]
         room = 256 + 4 * self.columns
         while True:
             out = np.empty((room, 6))
             n = kernels.plane_trapezoids(
-                self.base[k],
+                self.page[k],
                 self.grid,
-                self.columns,
                 self.tiles,
-                *(self.state, self.start, self.size, self.pool),
+                self.state,
+                self.start,
+                self.size,
+                self.pool,
                 out,
             )
             if n >= 0:

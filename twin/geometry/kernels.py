@@ -9,7 +9,9 @@ Cutting a strip lo(u) <= v <= hi(u) keeps the parts of the edges that are not ab
 parts of lo and hi that have an odd number of edges above them. Every part is classified once and both uses share the
 same u, so parity cannot leak.
 
-Planes are built when first touched: ``base[k]`` is -1 before, and the index of the plane's first cell after.
+Cells lie in pages of 8 tiles of one column: ``page[k, column, block]`` is the index of the first cell of a page of
+plane k, -1 while the plane is not built. Planes that begin alike share pages until one is cut: then it gets its own
+(``own``), with the same edges, which are never written where they belong to another cell (``room`` is 0).
 """
 
 from __future__ import annotations
@@ -24,8 +26,12 @@ from twin.arrays import FloatArray
 
 EMPTY, FULL, PARTIAL = 0, 1, 2
 #: What `cut_planes` and `fill_plane` return when they ran out of room, to be called again.
-DONE, POOL_FULL, SCRATCH_FULL = 0, 1, 2
-_SMALLEST_BLOCK = 8
+DONE, POOL_FULL, SCRATCH_FULL, CELLS_FULL = 0, 1, 2, 3
+_SMALLEST_BLOCK = 4
+#: Tiles in a page of cells: 2 ** 3.
+PAGE_BITS = 3
+PAGE_TILES = 1 << PAGE_BITS
+_IN_PAGE = PAGE_TILES - 1
 
 
 @njit(cache=True, nogil=True)
@@ -74,7 +80,7 @@ def _store(
 ) -> bool:
     """Give a cell its edges; False when the pool has no room (nothing is changed then).
 
-    ``free[e]`` heads the list of released blocks of 8 * 2**e edges; its last entry is the pool's end so far.
+    ``free[e]`` heads the list of released blocks of 4 * 2**e edges; its last entry is the pool's end so far.
     """
     if count > room[cell]:
         exponent = _block_class(count)
@@ -340,14 +346,45 @@ def _cut_edges(
 
 
 @njit(cache=True, nogil=True)
+def _own_page(
+    k: int,
+    column: int,
+    block: int,
+    page: NDArray[np.int64],
+    own: NDArray[np.bool_],
+    used: NDArray[np.int64],
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    room: NDArray[np.int64],
+) -> bool:
+    """Give a plane cells of its own for a page, if it has none yet; False when there are no cells left."""
+    if own[k, column, block]:
+        return True
+    old, new = page[k, column, block], used[0]
+    if new + PAGE_TILES > len(state):
+        return False
+    for tile in range(PAGE_TILES):
+        state[new + tile] = state[old + tile]
+        start[new + tile] = start[old + tile]
+        size[new + tile] = size[old + tile]
+        room[new + tile] = 0
+    used[0] += PAGE_TILES
+    page[k, column, block] = new
+    own[k, column, block] = True
+    return True
+
+
+@njit(cache=True, nogil=True)
 def cut_planes(
     first: int,
     offsets: NDArray[np.int64],
     nodes: FloatArray,
     grid: FloatArray,
-    columns: int,
     tiles: int,
-    base: NDArray[np.int64],
+    page: NDArray[np.int64],
+    own: NDArray[np.bool_],
+    used: NDArray[np.int64],
     state: NDArray[np.int8],
     start: NDArray[np.int64],
     size: NDArray[np.int64],
@@ -367,19 +404,21 @@ def cut_planes(
     Args:
         first, offsets, nodes: see `twin.geometry.strips.Strips`.
         grid: lower u, lower v, cell size.
+        used: shape (1,), number of cells in use.
         cursor: shape (3,): plane, column, tile to go on from; 0 at the first call, kept between calls.
         apply: False leaves the planes as they are.
         removed: shape (planes,), area taken from each plane, added to.
 
     Returns:
-        DONE, or POOL_FULL / SCRATCH_FULL: make room and call again with the same cursor.
+        DONE, or POOL_FULL / SCRATCH_FULL / CELLS_FULL: make room and call again with the same cursor.
     """
     u_low, v_low, h = grid[0], grid[1], grid[2]
+    columns = page.shape[1]
     while cursor[0] < len(offsets) - 1:
         i = cursor[0]
         n0, n1 = offsets[i], offsets[i + 1] - 1
-        cells = base[first + i]
-        if n1 <= n0 or cells < 0:
+        plane = first + i
+        if n1 <= n0 or page[plane, 0, 0] < 0:
             cursor[0] += 1
             continue
         u_first, u_last = nodes[n0, 0], nodes[n1, 0]
@@ -412,7 +451,8 @@ def cut_planes(
                 last_tile = min(tiles - 1, int(math.floor((hi_max - v_low) / h)))
                 spans = a0 == c0 and a1 == c1
                 while tile <= last_tile:
-                    cell = cells + column * tiles + tile
+                    block = tile >> PAGE_BITS
+                    cell = page[plane, column, block] + (tile & _IN_PAGE)
                     floor = v_low + tile * h
                     top = v_low + (tile + 1) * h
                     if state[cell] == EMPTY:
@@ -420,13 +460,19 @@ def cut_planes(
                         continue
                     if spans and lo_max <= floor and hi_min >= top:
                         if state[cell] == FULL:
-                            removed[i] += (c1 - c0) * (top - floor)
+                            area = (c1 - c0) * (top - floor)
                         else:
-                            removed[i] += _cell_area(pool, start[cell], size[cell], floor)
+                            area = _cell_area(pool, start[cell], size[cell], floor)
                         if apply:
+                            if not _own_page(plane, column, block, page, own, used, state, start, size, room):
+                                cursor[1] = column
+                                cursor[2] = tile
+                                return CELLS_FULL
+                            cell = page[plane, column, block] + (tile & _IN_PAGE)
                             _release(cell, start, room, pool, free)
                             size[cell] = 0
                             state[cell] = EMPTY
+                        removed[i] += area
                         tile += 1
                         continue
                     pieces = _split_segments(nodes, node, end, a0, a1, floor, top, segments)
@@ -449,6 +495,11 @@ def cut_planes(
                         cursor[2] = tile
                         return SCRATCH_FULL
                     if pieces > 0:
+                        if apply and not _own_page(plane, column, block, page, own, used, state, start, size, room):
+                            cursor[1] = column
+                            cursor[2] = tile
+                            return CELLS_FULL
+                        cell = page[plane, column, block] + (tile & _IN_PAGE)
                         if apply and not _store(cell, out, count, state, start, size, room, pool, free):
                             cursor[1] = column
                             cursor[2] = tile
@@ -484,6 +535,7 @@ def fill_plane(
 
     Args:
         edges: shape (n, 5), all non-vertical ring edges as (u0, v0, u1, v1, sign).
+        cells: first of the plane's cells; each column takes whole pages of them.
         work: shape (2 n + more, 5), scratch for the edges of one column; as ``out``.
         cursor: shape (1,): column to go on from.
 
@@ -491,6 +543,7 @@ def fill_plane(
         DONE, POOL_FULL or SCRATCH_FULL, as `cut_planes`.
     """
     u_low, v_low, h = grid[0], grid[1], grid[2]
+    stride = (tiles + _IN_PAGE) >> PAGE_BITS << PAGE_BITS
     while cursor[0] < columns:
         column = cursor[0]
         c0 = u_low + column * h
@@ -509,7 +562,7 @@ def fill_plane(
             for e in range(n):
                 lowest = min(lowest, work[e, 1], work[e, 3])
             if repeats and lowest > top:
-                state[cells + column * tiles + tile] = state[cells + column * tiles + tile - 1]
+                state[cells + column * stride + tile] = state[cells + column * stride + tile - 1]
                 continue
             count = 0
             rest = 0
@@ -543,7 +596,7 @@ def fill_plane(
             # with all edges above, the next tile is like this one if this one is all material or none
             repeats = rest == n
             n = rest
-            cell = cells + column * tiles + tile
+            cell = cells + column * stride + tile
             closed = _spans_top(out, count, c0, c1, top)
             repeats = repeats and (closed or count == 0)
             if closed:
@@ -566,28 +619,10 @@ def _spans_top(edges: FloatArray, count: int, c0: float, c1: float, top: float) 
 
 
 @njit(cache=True, nogil=True)
-def in_plane(
-    u: float,
-    v: float,
-    cells: int,
-    grid: FloatArray,
-    columns: int,
-    tiles: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    pool: FloatArray,
-) -> bool:
-    """Whether a point of a plane lies in material."""
-    column = int(math.floor((u - grid[0]) / grid[2]))
-    tile = int(math.floor((v - grid[1]) / grid[2]))
-    if column < 0 or tile < 0 or column >= columns or tile >= tiles:
-        return False
-    cell = cells + column * tiles + tile
-    if state[cell] != PARTIAL:
-        return state[cell] == FULL
+def _odd_above(u: float, v: float, begin: int, end: int, pool: FloatArray) -> bool:
+    """Whether an odd number of a cell's edges lies above a point."""
     inside = False
-    for e in range(start[cell], start[cell] + size[cell]):
+    for e in range(begin, end):
         if pool[e, 0] <= u < pool[e, 2]:
             if _line(u, pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3]) > v:
                 inside = not inside
@@ -603,9 +638,8 @@ def contains(
     low: float,
     pitch: float,
     grid: FloatArray,
-    columns: int,
     tiles: int,
-    base: NDArray[np.int64],
+    page: NDArray[np.int64],
     state: NDArray[np.int8],
     start: NDArray[np.int64],
     size: NDArray[np.int64],
@@ -618,22 +652,30 @@ def contains(
 
     Points whose votes are below ``needed_low`` or above ``needed_high`` already are left alone: their case is settled.
     """
-    planes = len(base)
+    planes, columns = len(page), page.shape[1]
+    u_low, v_low, h = grid[0], grid[1], grid[2]
     for i in range(len(points)):
         if votes[i] < needed_low or votes[i] > needed_high:
             continue
         k = int(math.floor((points[i, normal_axis] - low) / pitch))
-        if k < 0 or k >= planes or base[k] < 0:
+        u, v = points[i, u_axis], points[i, v_axis]
+        column = int(math.floor((u - u_low) / h))
+        tile = int(math.floor((v - v_low) / h))
+        if k < 0 or k >= planes or column < 0 or column >= columns or tile < 0 or tile >= tiles:
             continue
-        if in_plane(points[i, u_axis], points[i, v_axis], base[k], grid, columns, tiles, state, start, size, pool):
+        first = page[k, column, tile >> PAGE_BITS]
+        if first < 0:
+            continue
+        cell = first + (tile & _IN_PAGE)
+        kind = state[cell]
+        if kind == FULL or (kind == PARTIAL and _odd_above(u, v, start[cell], start[cell] + size[cell], pool)):
             votes[i] += 1
 
 
 @njit(cache=True, nogil=True)
 def plane_trapezoids(
-    cells: int,
+    page: NDArray[np.int64],
     grid: FloatArray,
-    columns: int,
     tiles: int,
     state: NDArray[np.int8],
     start: NDArray[np.int64],
@@ -641,7 +683,9 @@ def plane_trapezoids(
     pool: FloatArray,
     out: FloatArray,
 ) -> int:
-    """A plane's material as trapezoids with vertical sides, rows (ua, ub, bottom a, bottom b, top a, top b).
+    """Material of a plane, given by its row of pages, as trapezoids with vertical sides.
+
+    Rows are (ua, ub, bottom a, bottom b, top a, top b).
 
     Runs of full tiles in a column make one rectangle. Returns the number of rows, or -1 when ``out`` is too short.
     """
@@ -649,15 +693,15 @@ def plane_trapezoids(
     cuts = np.empty(0)
     height = np.empty(0)
     order = np.empty(0, dtype=np.int64)
-    for column in range(columns):
+    for column in range(len(page)):
         c0 = grid[0] + column * grid[2]
         c1 = grid[0] + (column + 1) * grid[2]
         tile = 0
         while tile < tiles:
-            cell = cells + column * tiles + tile
+            cell = page[column, tile >> PAGE_BITS] + (tile & _IN_PAGE)
             floor = grid[1] + tile * grid[2]
             if state[cell] == FULL:
-                while tile < tiles and state[cells + column * tiles + tile] == FULL:
+                while tile < tiles and state[page[column, tile >> PAGE_BITS] + (tile & _IN_PAGE)] == FULL:
                     tile += 1
                 if n >= len(out):
                     return -1

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 
 _EMPTY, _FULL = 0, 1
+#: Tiles in a page of cells, as there.
+_PAGE_BITS, _IN_PAGE = 3, 7
 
 
 @njit(cache=True, nogil=True)
@@ -48,9 +50,8 @@ def cell_u_lines(
     lines: FloatArray,
     window: tuple[float, float],
     merge: float,
-    planes: NDArray[np.int64],
+    pages: NDArray[np.int64],
     grid: FloatArray,
-    columns: int,
     tiles: int,
     state: NDArray[np.int8],
     start: NDArray[np.int64],
@@ -64,7 +65,7 @@ def cell_u_lines(
 
     Args:
         window: only cells between these v are looked at.
-        planes: shape (p,), the first cell of each plane.
+        pages: shape (p, columns, blocks), the first cell of each page of each plane.
         offsets: shape (p n + 1,), filled: all lines of the first plane, then those of the second, ...
         ends, slopes: filled.
 
@@ -76,14 +77,14 @@ def cell_u_lines(
     t1 = min(tiles, math.floor((window[1] - grid[1]) / h) + 1)
     n = 0
     offsets[0] = 0
-    for i in range(len(planes) * len(lines)):
+    for i in range(len(pages) * len(lines)):
         begin = n
-        cells = planes[i // len(lines)]
+        page = pages[i // len(lines)]
         u = lines[i % len(lines)]
         column = math.floor((u - grid[0]) / h)
-        if 0 <= column < columns:
+        if 0 <= column < len(page):
             for tile in range(t0, t1):
-                cell = cells + column * tiles + tile
+                cell = page[column, tile >> _PAGE_BITS] + (tile & _IN_PAGE)
                 if state[cell] == _EMPTY:
                     continue
                 if n + 3 + size[cell] > len(ends):
@@ -113,9 +114,8 @@ def cell_v_lines(
     lines: FloatArray,
     window: tuple[float, float],
     merge: float,
-    planes: NDArray[np.int64],
+    pages: NDArray[np.int64],
     grid: FloatArray,
-    columns: int,
     tiles: int,
     state: NDArray[np.int8],
     start: NDArray[np.int64],
@@ -132,17 +132,17 @@ def cell_v_lines(
     """
     h = grid[2]
     c0 = max(0, math.floor((window[0] - grid[0]) / h))
-    c1 = min(columns, math.floor((window[1] - grid[0]) / h) + 1)
+    c1 = min(pages.shape[1], math.floor((window[1] - grid[0]) / h) + 1)
     n = 0
     offsets[0] = 0
-    for i in range(len(planes) * len(lines)):
+    for i in range(len(pages) * len(lines)):
         begin = n
-        cells = planes[i // len(lines)]
+        page = pages[i // len(lines)]
         v = lines[i % len(lines)]
         tile = math.floor((v - grid[1]) / h)
         if 0 <= tile < tiles:
             for column in range(c0, c1):
-                cell = cells + column * tiles + tile
+                cell = page[column, tile >> _PAGE_BITS] + (tile & _IN_PAGE)
                 if state[cell] == _EMPTY:
                     continue
                 if n + 2 + 2 * size[cell] > len(ends):

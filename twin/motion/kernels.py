@@ -373,8 +373,21 @@ def section_nodes(
     stack = np.empty((_MAX_DEPTH + 2, 5))
     written = 0
     offsets[0] = 0
+    # planes that the whole tool passes straight through have one section
+    across = not horizontal and move[1] == 0.0 and move[2] == 0.0
+    passed_from = min(start[0], start[0] + move[0]) + shape[6]
+    passed_to = max(start[0], start[0] + move[0]) - shape[6]
     for i in range(planes):
         w = first_w + i * pitch
+        if across and i > 0 and w - pitch >= passed_from and w <= passed_to:
+            count = offsets[i] - offsets[i - 1]
+            if written + count > len(nodes):
+                return -1
+            for n in range(written, written + count):
+                nodes[n, 0], nodes[n, 1], nodes[n, 2] = nodes[n - count, 0], nodes[n - count, 1], nodes[n - count, 2]
+            written += count
+            offsets[i + 1] = written
+            continue
         low, high = _range_of_u(shape, horizontal, start, move, w)
         half = 0.5 * (high - low)
         if not half > 1e-9 * shape[6]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.record import RunSummary, Step, ToolSummary
+from twin.run import kernels
 
 _TOP_LINES = 10
 Four = tuple[float, float, float, float]
@@ -82,18 +83,17 @@ class Totals:
             self._add_forces(tool, step, sample_s)
 
     def _add_forces(self, tool: _Sums, step: Step, sample_s: float) -> None:
-        force, torque = step.samples.force_n, step.samples.torque_nm
-        resultant = np.sqrt(np.sum(force**2, axis=1))
-        tool.sampled_s += sample_s * len(torque)
-        tool.impulse[:3] += force.sum(axis=0) * sample_s
-        tool.impulse[3] += float(resultant.sum()) * sample_s
-        tool.impulse[4] += float(torque.sum()) * sample_s
-        highest = float(resultant.max())
+        samples = step.samples
+        measured = kernels.measure(samples.force_n, samples.torque_nm, samples.power_w)
+        peaks = measured[kernels.PEAKS]
+        highest = float(peaks[3])
+        tool.sampled_s += sample_s * len(samples.torque_nm)
+        tool.impulse += measured[kernels.SUMS] * sample_s
         if highest > tool.peak[3]:
             tool.peak_line = step.nc_line
-        tool.peak = np.maximum(tool.peak, np.append(np.abs(force).max(axis=0), highest))
-        tool.peak_torque_nm = max(tool.peak_torque_nm, float(torque.max()))
-        tool.peak_power_w = max(tool.peak_power_w, float(step.samples.power_w.max()))
+        tool.peak = np.maximum(tool.peak, peaks[:4])
+        tool.peak_torque_nm = max(tool.peak_torque_nm, float(peaks[4]))
+        tool.peak_power_w = max(tool.peak_power_w, float(peaks[5]))
         if highest > self._lines.get(step.nc_line, (0.0, ""))[0]:
             self._lines[step.nc_line] = (highest, self._block)
             if len(self._lines) > 100 * _TOP_LINES:

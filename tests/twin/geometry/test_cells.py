@@ -78,11 +78,10 @@ def test_thousands_of_cuts_agree_with_geos_and_pyclipper() -> None:
             truth = shapely.Polygon(OUTER).difference(shapely.Polygon(HOLE))
     assert family.region(0).area_mm2 == pytest.approx(truth.area, abs=1e-5)
     points = rng.uniform((-1.0, -1.0), (21.0, 14.0), (5000, 2))
-    arrays = (family.state, family.start, family.size, family.pool)
-    inside = [
-        kernels.in_plane(u, v, family.base[0], family.grid, family.columns, family.tiles, *arrays) for u, v in points
-    ]
-    assert np.array_equal(inside, shapely.contains_xy(truth, points[:, 0], points[:, 1]))
+    votes = np.zeros(len(points), dtype=np.int8)
+    cells = (family.grid, family.tiles, family.page, family.state, family.start, family.size, family.pool)
+    kernels.contains(np.column_stack((points, np.zeros(5000))), 2, 0, 1, -0.5, 1.0, *cells, votes, 0, 0)
+    assert np.array_equal(votes > 0, shapely.contains_xy(truth, points[:, 0], points[:, 1]))
     lines = np.sort(rng.uniform(-1.0, 21.0, 300))
     offsets, ends, _ = family.line_ends(np.array([0]), 0, lines, (-1.0, 20.0))
     for u, first, last in zip(lines, offsets[:-1], offsets[1:], strict=True):
@@ -117,7 +116,7 @@ def test_a_plane_nothing_touched_takes_no_memory() -> None:
     region = Region.of(OUTER)
     family = CellFamily([region] * 50, (0.0, 0.0), (20.0, 12.7), 1.0)
     family.cut(strip(np.array([(1.0, 1.0), (7.0, 2.0), (3.0, 6.0)])))
-    assert np.count_nonzero(family.base >= 0) == 1
+    assert np.count_nonzero(family.page[:, 0, 0] >= 0) == 1
     assert family.region(7) is region
 
 
