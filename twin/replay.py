@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from types import TracebackType
 from typing import Self
@@ -27,14 +27,14 @@ from twin.job import Job
 from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Move
 from twin.record import Collision, CollisionKind, ForceSamples, Record, RunSummary, Step
-from twin.run.clock import SpindleClock
+from twin.run.clock import SpindleClock, Turned
 from twin.run.contacts import Contact, Contacts, collision_record, point
 from twin.run.header import run_header
 from twin.run.material import Material
 from twin.run.nc_events import nc_event
 from twin.run.preview import FRAMES, Preview
 from twin.run.setup import ToolSetup, machine_settings, stock_slices, tool_setup, workpiece
-from twin.run.solve import IN_AIR, Solved, StepSolver
+from twin.run.solve import IN_AIR, Solved, StepSolver, one_ahead
 from twin.run.totals import Totals
 from twin.tolerance import Tolerance
 from twin.workpiece.to_mesh import SurfaceMesh, surface_mesh
@@ -170,11 +170,22 @@ class Replay:
         feed = along / length
         count = max(1, math.ceil(length / self.job.simulation.step_mm * (1.0 - 1e-9)))
         ends = start + along * (np.arange(count + 1) / count)[:, None]
-        pending = self._material.pending(tool.number, start, feed)
+        for first, turns, answer in one_ahead(self._begun(move, tool, ends, feed, duration_s / count)):
+            for i, (turned, solved) in enumerate(zip(turns, answer(), strict=True), start=first):
+                yield self._step(move, ends[i], ends[i + 1], duration_s / count, turned, solved)
+
+    def _begun(
+        self, move: Move, tool: ToolSetup, ends: FloatArray, feed: FloatArray, step_s: float
+    ) -> Iterator[tuple[int, list[Turned], Callable[[], list[Solved]]]]:
+        """Steps whose solution has begun, many together: the first one's number, their samples, and the answer."""
+        pending = self._material.pending(tool.number, ends[0], feed)
+        count, t_s = len(ends) - 1, self._t_s
         for first in range(0, count, _STEPS_TOGETHER):
             n = min(_STEPS_TOGETHER, count - first)
-            starts = self._t_s + np.arange(n) * (duration_s / count)
-            turns = [self._clock.advance(float(t_s), duration_s / count, move.spindle_rpm) for t_s in starts]
+            turns = []
+            for _ in range(n):
+                turns.append(self._clock.advance(t_s, step_s, move.spindle_rpm))
+                t_s += step_s
             at = Positions(
                 0.5 * (ends[first : first + n] + ends[first + 1 : first + n + 1]),
                 np.repeat(feed[None, :], n, axis=0),
@@ -182,10 +193,8 @@ class Replay:
                 np.full(n, move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)),
                 np.full(n, len(pending), dtype=np.int64),
             )
-            found = self._solver.solve(tool, at, [t[1] for t in turns], np.full(n, move.spindle_rpm), pending)
-            for i, (turned, solved) in enumerate(zip(turns, found, strict=True)):
-                a, b = ends[first + i], ends[first + i + 1]
-                yield self._step(move, a, b, duration_s / count, turned, solved)
+            rpm = np.full(n, move.spindle_rpm)
+            yield first, turns, self._solver.solve(tool, at, [angles for _, angles in turns], rpm, pending)
 
     def _step(
         self,
@@ -193,7 +202,7 @@ class Replay:
         start: FloatArray,
         end: FloatArray,
         duration_s: float,
-        turned: tuple[FloatArray, FloatArray],
+        turned: Turned,
         solved: Solved = IN_AIR,
     ) -> Step:
         """The record of one step; moves time on.

@@ -167,8 +167,16 @@ class CellFamily:
         return lines.collect(
             len(planes) * len(at_mm),
             lambda offsets, ends, slopes: kernel(
-                *(at_mm, window_mm, lines.MERGE_MM, self.page[planes], self.grid, self.tiles),
-                *(self.state, self.start, self.size, self.pool, offsets, ends, slopes),
+                at_mm,
+                window_mm,
+                lines.MERGE_MM,
+                self.page[planes],
+                self.grid,
+                self.tiles,
+                *(self.state, self.start, self.size, self.pool),
+                offsets,
+                ends,
+                slopes,
             ),
         )
 

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
 import numpy as np
 
 from twin.arrays import FloatArray
+
+#: Times and signed spindle angles of samples, both of shape (n,).
+Turned: TypeAlias = tuple[FloatArray, FloatArray]
 
 #: A sample this close before a step's end, in angle steps, belongs to the next step.
 _EDGE = 1e-9
@@ -27,7 +31,7 @@ class SpindleClock:
         self._turned_steps = 0.0
         self._angle_rad = 0.0
 
-    def advance(self, t_s: float, duration_s: float, spindle_rpm: float) -> tuple[FloatArray, FloatArray]:
+    def advance(self, t_s: float, duration_s: float, spindle_rpm: float) -> Turned:
         """Turn for a while and tell the samples taken on the way.
 
         Args:

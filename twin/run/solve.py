@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import TypeVar
 
 from twin.arrays import FloatArray
 from twin.cutting.engagement import NO_ENGAGEMENT, Positions, Scratch
@@ -19,6 +20,7 @@ from twin.record import Engagement
 from twin.run.setup import ToolSetup
 from twin.workpiece.trislice import TriSlices
 
+_T = TypeVar("_T")
 #: Steps that one thread works on at a time: enough to make calls cheap, few enough to stay in its cache.
 PART = 8
 
@@ -58,14 +60,19 @@ class StepSolver:
         spindle_rad: Sequence[FloatArray],
         spindle_rpm: FloatArray,
         pending: SweptVolume,
-    ) -> list[Solved]:
-        """Engagement and forces of steps.
+    ) -> Callable[[], list[Solved]]:
+        """Begin to find engagement and forces of steps.
+
+        The material must stay as it is until the answer is there.
 
         Args:
             at: where the tool is asked, one position a step.
             spindle_rad: signed spindle angles of each step's samples.
             spindle_rpm: shape (n,), signed speeds.
             pending: sweeps that are not out of the slices yet.
+
+        Returns:
+            What waits for the answer, one `Solved` a step.
         """
         tool.engager.prepare(at, self._workpiece)
 
@@ -74,8 +81,8 @@ class StepSolver:
             return self._part(tool, at.part(first, last), spindle_rad[first:last], spindle_rpm[first:last], pending)
 
         firsts = range(0, len(at), PART)
-        parts = map(part, firsts) if self._pool is None or len(firsts) == 1 else self._pool.map(part, firsts)
-        return [solved for solveds in parts for solved in solveds]
+        parts = map(part, firsts) if self._pool is None else self._pool.map(part, firsts)
+        return lambda: [solved for solveds in parts for solved in solveds]
 
     def _part(
         self,
@@ -110,3 +117,13 @@ class StepSolver:
         """Let the threads go."""
         if self._pool is not None:
             self._pool.shutdown()
+
+
+def one_ahead(items: Iterator[_T]) -> Iterator[_T]:
+    """The same items, each handed on when the next has been made: work that an item began goes on meanwhile."""
+    held: list[_T] = []
+    for item in items:
+        held.append(item)
+        if len(held) > 1:
+            yield held.pop(0)
+    yield from held
