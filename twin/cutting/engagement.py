@@ -50,6 +50,20 @@ class EngagementMap:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class EngagementMaps:
+    """Maps of several positions.
+
+    Attributes:
+        share, turn: shape (positions, rows, elements), as those of an `EngagementMap`.
+        summaries: extent of each engagement, `NO_ENGAGEMENT` in air.
+    """
+
+    share: FloatArray
+    turn: FloatArray
+    summaries: tuple[Engagement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Positions:
     """Tool positions to be asked together.
 
@@ -125,7 +139,10 @@ class Engager:
             np.array([len(pending)], dtype=np.int64),
         )
         self.prepare(at, workpiece)
-        return self.engage_all(at, workpiece, pending, Scratch())[0]
+        found = self.engage_all(at, workpiece, pending, Scratch())
+        if found is None or not found.summaries[0].cutting:
+            return None
+        return EngagementMap(found.share[0], found.turn[0], found.summaries[0])
 
     def prepare(self, at: Positions, workpiece: TriSlices) -> None:
         """Make the workpiece ready for `engage_all` at these positions."""
@@ -137,8 +154,8 @@ class Engager:
 
     def engage_all(
         self, at: Positions, workpiece: TriSlices, pending: SweptVolume, scratch: Scratch
-    ) -> list[EngagementMap | None]:
-        """The engagement at each of several positions, or None in air; several threads may ask at a time.
+    ) -> EngagementMaps | None:
+        """The engagement at each of several positions, None where all are in air; several threads may ask at a time.
 
         Args:
             at: positions for which `prepare` was called, in any order.
@@ -146,21 +163,21 @@ class Engager:
         """
         reach = float(workpiece.high_mm[2] - at.tip_mm[:, 2].min())
         if reach <= 0.0:
-            return [None] * len(at)
+            return None
         elements = min(len(self._edges.z_mm), int(np.searchsorted(self._edges.z_mm, reach)) + 1)
         status = scratch.array("status", np.int8, len(at), len(self._cos_theta), elements)
-        if not self._ask_front(at, workpiece, pending, status, scratch).any():
-            return [None] * len(at)
+        if not self._ask_front(at, workpiece, pending, status, scratch):
+            return None
         share, turn = self._boundaries(at, workpiece, pending, status, scratch)
-        return [self._map(at, s, status[s], share[s], turn[s]) for s in range(len(at))]
+        return EngagementMaps(share, turn, self._summaries(at, status, share, turn))
 
     def _ask_front(
         self, at: Positions, workpiece: TriSlices, pending: SweptVolume, status: NDArray[np.int8], scratch: Scratch
-    ) -> NDArray[np.bool_]:
-        """Fill the status maps; tells which steps have an engaged point."""
+    ) -> bool:
+        """Fill the status maps; tells whether any point is engaged."""
         elements = status.shape[2]
         points = scratch.array("points", np.float64, status.size, 3)
-        places = scratch.array("places", np.int32, status.size, 3)
+        places = scratch.array("places", np.int32, status.size)
         count = kernels.front_points(
             at.tip_mm,
             at.feed,
@@ -177,10 +194,9 @@ class Engager:
             places,
         )
         points, places = points[:count], places[:count]
-        inside = self._in_material(points, places[:, 0], at, workpiece, pending)
-        engaged = np.zeros(len(at), dtype=np.bool_)
-        kernels.mark(places, inside, status, engaged)
-        return engaged
+        steps = places // status[0].size if len(pending) else places
+        inside = self._in_material(points, steps, at, workpiece, pending)
+        return bool(kernels.mark(places, inside, status.reshape(-1)))
 
     def _in_material(
         self,
@@ -190,11 +206,17 @@ class Engager:
         workpiece: TriSlices,
         pending: SweptVolume,
     ) -> NDArray[np.bool_]:
+        """Which points are in material.
+
+        Args:
+            steps: shape (n,), the position that each point belongs to; only looked at where sweeps are pending.
+        """
         votes = np.zeros(len(points), dtype=np.int8)
         if len(points):
             workpiece.count_votes(points, self._enough, votes)
         inside = votes >= self._enough
-        pending.clear(points, inside, self._tolerance.depth_mm, at.waiting[steps])
+        if len(pending):
+            pending.clear(points, inside, self._tolerance.depth_mm, at.waiting[steps])
         return np.asarray(inside)
 
     def _boundaries(
@@ -249,15 +271,15 @@ class Engager:
             kernels.narrow(self._in_material(points, found[:, 0], at, workpiece, pending), first, low, high)
         return 0.5 * (low + high)
 
-    def _map(
-        self, at: Positions, s: int, status: NDArray[np.int8], share: FloatArray, turn: FloatArray
-    ) -> EngagementMap | None:
-        out = np.empty(7)
+    def _summaries(
+        self, at: Positions, status: NDArray[np.int8], share: FloatArray, turn: FloatArray
+    ) -> tuple[Engagement, ...]:
+        out = np.empty((len(at), 7))
         kernels.summarise(
             share,
             turn,
             status,
-            at.feed[s],
+            at.feed,
             self._cos_theta,
             self._sin_theta,
             self._edges.radius_mm,
@@ -267,18 +289,23 @@ class Engager:
             self._edges.length_mm,
             out,
         )
-        z_low, z_high, side_low, side_high, arc, front_area, nf_max = out.tolist()
-        if arc == 0.0:
-            return None
-        summary = Engagement(
-            axial_depth_mm=z_high - z_low,
-            radial_width_mm=side_high - side_low,
-            arc_rad=arc * 2.0 * math.pi / len(self._cos_theta),
-            chip_thickness_mm=nf_max * float(at.feed_per_tooth_mm[s]),
-            removal_rate_mm3_s=front_area * float(at.feed_mm_s[s]),
-            cutting=True,
-        )
-        return EngagementMap(share, turn, summary)
+        row_rad = 2.0 * math.pi / len(self._cos_theta)
+        given = zip(out.tolist(), at.feed_mm_s.tolist(), at.feed_per_tooth_mm.tolist(), strict=True)
+        return tuple(_summary(values, row_rad, feed_mm_s, chip_mm) for values, feed_mm_s, chip_mm in given)
+
+
+def _summary(values: list[float], row_rad: float, feed_mm_s: float, feed_per_tooth_mm: float) -> Engagement:
+    """What `kernels.summarise` found, as a record."""
+    if values[kernels.ARC] == 0.0:
+        return NO_ENGAGEMENT
+    return Engagement(
+        axial_depth_mm=values[kernels.Z_HIGH] - values[kernels.Z_LOW],
+        radial_width_mm=values[kernels.SIDE_HIGH] - values[kernels.SIDE_LOW],
+        arc_rad=values[kernels.ARC] * row_rad,
+        chip_thickness_mm=values[kernels.NF_MAX] * feed_per_tooth_mm,
+        removal_rate_mm3_s=values[kernels.FRONT_AREA] * feed_mm_s,
+        cutting=True,
+    )
 
 
 class Scratch:

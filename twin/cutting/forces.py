@@ -13,13 +13,15 @@ Force on the tool in machine axes; rows x, y, z, columns t, r, a (the paper's eq
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cutting import kernels
 from twin.cutting.coefficients import CuttingCoefficients
-from twin.cutting.engagement import EngagementMap
+from twin.cutting.engagement import EngagementMap, EngagementMaps
 from twin.tolerance import Tolerance
 from twin.tools.edges import CuttingEdges
 
@@ -77,26 +79,54 @@ class ForceModel:
         Returns:
             Shape (n, 4): Fx, Fy, Fz on the tool in N, torque in N mm.
         """
-        out = np.empty((len(spindle_rad), 4))
-        if len(spindle_rad):
-            kernels.sum_forces(
-                float(spindle_rad[0]),
-                self._period,
-                float(sense),
-                feed,
-                self._feed_part * feed_per_rev_mm,
-                engagement.share,
-                engagement.turn,
-                self._angle,
-                self._error,
-                self._edges.radius_mm,
-                self._cos_kappa,
-                self._sin_kappa,
-                self._edges.length_mm,
-                self._cos_row,
-                self._sin_row,
-                self._coefficients,
-                self._tolerance.chip * feed_per_rev_mm / self._edges.teeth,
-                out,
-            )
-        return out
+        maps = EngagementMaps(engagement.share[None], engagement.turn[None], (engagement.summary,))
+        found = self.forces_of_steps(
+            [spindle_rad], np.array([float(sense)]), feed[None, :], np.array([feed_per_rev_mm]), maps
+        )
+        return found[0]
+
+    def forces_of_steps(
+        self,
+        spindle_rad: Sequence[FloatArray],
+        sense: FloatArray,
+        feed: FloatArray,
+        feed_per_rev_mm: FloatArray,
+        engagement: EngagementMaps,
+    ) -> list[FloatArray]:
+        """Forces and torque in several steps; see `forces`.
+
+        Args:
+            spindle_rad: signed spindle angles of each step's samples.
+            sense, feed_per_rev_mm: shape (steps,).
+            feed: shape (steps, 3).
+            engagement: a map a step.
+
+        Returns:
+            Shape (n, 4) each, views of one array.
+        """
+        offsets = np.zeros(len(spindle_rad) + 1, dtype=np.int64)
+        np.cumsum([len(angles) for angles in spindle_rad], out=offsets[1:])
+        out = np.empty((int(offsets[-1]), 4))
+        kernels.sum_forces_of_steps(
+            np.array([float(angles[0]) if len(angles) else 0.0 for angles in spindle_rad]),
+            offsets,
+            self._period,
+            sense,
+            feed,
+            feed_per_rev_mm,
+            self._feed_part,
+            engagement.share,
+            engagement.turn,
+            self._angle,
+            self._error,
+            self._edges.radius_mm,
+            self._cos_kappa,
+            self._sin_kappa,
+            self._edges.length_mm,
+            self._cos_row,
+            self._sin_row,
+            self._coefficients,
+            self._tolerance.chip / self._edges.teeth,
+            out,
+        )
+        return [out[a:b] for a, b in pairwise(offsets.tolist())]

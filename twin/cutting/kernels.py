@@ -42,26 +42,31 @@ def front_points(
         elements: how many of the elements, from the lowest, are asked for.
         gate: shape (elements or more,), least n.f of a front point of each element.
         status: shape (steps, rows, elements): set to -1 behind the gate, 0 before it.
-        points, places: shapes (n, 3): the points and their step, row and column in the maps.
+        points: shape (n, 3), the points.
+        places: shape (n,), their places in the maps, counted through steps, rows and elements.
 
     Returns:
         Number of front points.
     """
     n = 0
+    rows = len(cos_theta)
     for s in range(len(tips)):
         x, y, z = tips[s, 0], tips[s, 1], tips[s, 2]
         down = feeds[s, 2]
-        for j in range(len(cos_theta)):
-            across = cos_theta[j] * feeds[s, 0] + sin_theta[j] * feeds[s, 1]
+        for j in range(rows):
+            cos_t, sin_t = cos_theta[j], sin_theta[j]
+            across = cos_t * feeds[s, 0] + sin_t * feeds[s, 1]
+            first = (s * rows + j) * elements
+            if across <= 0.0 and down >= 0.0:
+                status[s, j] = -1
+                continue
             for i in range(elements):
                 if across * sin_kappa[i] - down * cos_kappa[i] > gate[i]:
                     status[s, j, i] = 0
-                    points[n, 0] = x + radius[i] * cos_theta[j]
-                    points[n, 1] = y + radius[i] * sin_theta[j]
+                    points[n, 0] = x + radius[i] * cos_t
+                    points[n, 1] = y + radius[i] * sin_t
                     points[n, 2] = z + height[i]
-                    places[n, 0] = s
-                    places[n, 1] = j
-                    places[n, 2] = i
+                    places[n] = first + i
                     n += 1
                 else:
                     status[s, j, i] = -1
@@ -69,18 +74,18 @@ def front_points(
 
 
 @njit(cache=True, nogil=True)
-def mark(
-    places: NDArray[np.int32], inside: NDArray[np.bool_], status: NDArray[np.int8], engaged: NDArray[np.bool_]
-) -> None:
-    """Write what was found at the front points into the status maps: 1 engaged, 0 not.
+def mark(places: NDArray[np.int32], inside: NDArray[np.bool_], status: NDArray[np.int8]) -> bool:
+    """Write what was found at the front points into the status maps, in one dimension: 1 engaged, 0 not.
 
-    Args:
-        engaged: shape (steps,): set where a step has an engaged point.
+    Returns:
+        Whether any is engaged.
     """
+    engaged = False
     for n in range(len(places)):
         if inside[n]:
-            status[places[n, 0], places[n, 1], places[n, 2]] = 1
-            engaged[places[n, 0]] = True
+            status[places[n]] = 1
+            engaged = True
+    return engaged
 
 
 @njit(cache=True, nogil=True)
@@ -210,7 +215,7 @@ def weights(
 
 
 @njit(cache=True, nogil=True)
-def summarise(
+def _summarise_one(
     share: FloatArray,
     turn: FloatArray,
     status: NDArray[np.int8],
@@ -231,7 +236,7 @@ def summarise(
             largest n.f; the extents are +inf, -inf where nothing is engaged.
     """
     out[Z_LOW], out[Z_HIGH], out[SIDE_LOW], out[SIDE_HIGH] = math.inf, -math.inf, math.inf, -math.inf
-    out[ARC], out[FRONT_AREA], out[NF_MAX] = 0.0, 0.0, 0.0
+    out[ARC], front_area, nf_max = 0.0, 0.0, 0.0
     rows, elements = share.shape
     step = 2.0 * math.pi / rows
     plan = math.hypot(feed[0], feed[1])
@@ -252,11 +257,13 @@ def summarise(
                 mean = turn[j, i] if first > 0.0 else 1.0 - turn[j, i]
             else:
                 mean = 0.5 * (first + second)
-            out[FRONT_AREA] += mean * 0.5 * (max(0.0, nf) + max(0.0, nf_after)) * radius[i] * length[i] * step
+            front_area += mean * 0.5 * (max(0.0, nf) + max(0.0, nf_after)) * radius[i] * length[i] * step
             if status[j, i] < 0 or first <= 0.0:
                 continue
             engaged = True
-            out[NF_MAX] = max(out[NF_MAX], nf)
+            nf_max = max(nf_max, nf)
+            if first == 1.0 and 0 < i < elements - 1 and status[j, i - 1] == 1 and status[j, i + 1] == 1:
+                continue  # what lies between others is not outermost
             rise = length[i] * sin_kappa[i]
             if i == 0 or share[j, i - 1] >= first:
                 low = height[i] - 0.5 * rise
@@ -271,6 +278,44 @@ def summarise(
             out[SIDE_HIGH] = max(out[SIDE_HIGH], wide * sideways)
         if engaged:
             out[ARC] += 1.0
+    out[FRONT_AREA], out[NF_MAX] = front_area, nf_max
+
+
+@njit(cache=True, nogil=True)
+def summarise(
+    share: FloatArray,
+    turn: FloatArray,
+    status: NDArray[np.int8],
+    feed: FloatArray,
+    cos_theta: FloatArray,
+    sin_theta: FloatArray,
+    radius: FloatArray,
+    height: FloatArray,
+    cos_kappa: FloatArray,
+    sin_kappa: FloatArray,
+    length: FloatArray,
+    out: FloatArray,
+) -> None:
+    """Extents of the engagement in several maps, each with its feed; see `_summarise_one`.
+
+    Args:
+        out: shape (steps, 7).
+    """
+    for s in range(len(share)):
+        _summarise_one(
+            share[s],
+            turn[s],
+            status[s],
+            feed[s],
+            cos_theta,
+            sin_theta,
+            radius,
+            height,
+            cos_kappa,
+            sin_kappa,
+            length,
+            out[s],
+        )
 
 
 @njit(cache=True, nogil=True)
@@ -373,3 +418,59 @@ def sum_forces(
     for s in range(computed, samples):
         for c in range(4):
             out[s, c] = out[s - period, c]
+
+
+@njit(cache=True, nogil=True)
+def sum_forces_of_steps(
+    first_rad: FloatArray,
+    offsets: NDArray[np.int64],
+    period: int,
+    sense: FloatArray,
+    feed: FloatArray,
+    feed_per_rev: FloatArray,
+    feed_part: FloatArray,
+    share: FloatArray,
+    turn: FloatArray,
+    angle: FloatArray,
+    error_per_back: FloatArray,
+    radius: FloatArray,
+    cos_kappa: FloatArray,
+    sin_kappa: FloatArray,
+    length: FloatArray,
+    cos_row: FloatArray,
+    sin_row: FloatArray,
+    coefficients: FloatArray,
+    least_chip: float,
+    out: FloatArray,
+) -> None:
+    """The forces of several steps, each with its own map; see `sum_forces`.
+
+    Args:
+        first_rad, sense, feed_per_rev: shape (steps,).
+        offsets: shape (steps + 1,), where the samples of each step begin in ``out``.
+        feed: shape (steps, 3).
+        feed_part: shape (teeth, backs), part of a revolution since the tooth that passed so many teeth before.
+        share, turn: shape (steps, rows, elements).
+        least_chip: as a part of the feed per revolution.
+    """
+    for s in range(len(first_rad)):
+        sum_forces(
+            first_rad[s],
+            period,
+            sense[s],
+            feed[s],
+            feed_part * feed_per_rev[s],
+            share[s],
+            turn[s],
+            angle,
+            error_per_back,
+            radius,
+            cos_kappa,
+            sin_kappa,
+            length,
+            cos_row,
+            sin_row,
+            coefficients,
+            least_chip * feed_per_rev[s],
+            out[offsets[s] : offsets[s + 1]],
+        )

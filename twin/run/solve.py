@@ -6,12 +6,13 @@ the same numbers to the last bit whichever thread works on it, and however many 
 
 from __future__ import annotations
 
-import math
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeVar
+
+import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cutting.engagement import NO_ENGAGEMENT, Positions, Scratch
@@ -22,7 +23,7 @@ from twin.workpiece.trislice import TriSlices
 
 _T = TypeVar("_T")
 #: Steps that one thread works on at a time: enough to make calls cheap, few enough to stay in its cache.
-PART = 8
+PART = 16
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,19 +94,14 @@ class StepSolver:
         pending: SweptVolume,
     ) -> list[Solved]:
         maps = tool.engager.engage_all(at, self._workpiece, pending, self._scratch())
-        made = []
-        for i, engagement in enumerate(maps):
-            if engagement is None:
-                made.append(IN_AIR)
-                continue
-            loads = None
-            if tool.forces is not None:
-                rpm = float(spindle_rpm[i])
-                per_rev_mm = float(at.feed_mm_s[i]) * 60.0 / abs(rpm)
-                sense = int(math.copysign(1.0, rpm))
-                loads = tool.forces.forces(spindle_rad[i], sense, at.feed[i], per_rev_mm, engagement)
-            made.append(Solved(engagement.summary, loads))
-        return made
+        if maps is None:
+            return [IN_AIR] * len(at)
+        loads: Sequence[FloatArray | None] = [None] * len(at)
+        if tool.forces is not None:
+            per_rev_mm = at.feed_mm_s * 60.0 / np.abs(spindle_rpm)
+            loads = tool.forces.forces_of_steps(spindle_rad, np.sign(spindle_rpm), at.feed, per_rev_mm, maps)
+        given = zip(maps.summaries, loads, strict=True)
+        return [Solved(summary, load) if summary.cutting else IN_AIR for summary, load in given]
 
     def _scratch(self) -> Scratch:
         if not hasattr(self._local, "scratch"):
