@@ -136,6 +136,7 @@ class CellFamily:
                 strips.first,
                 strips.offsets,
                 strips.nodes,
+                strips.fresh,
                 self.grid,
                 self.tiles,
                 self.page,

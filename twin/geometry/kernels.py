@@ -380,6 +380,7 @@ def cut_planes(
     first: int,
     offsets: NDArray[np.int64],
     nodes: FloatArray,
+    fresh: NDArray[np.bool_],
     grid: FloatArray,
     tiles: int,
     page: NDArray[np.int64],
@@ -402,7 +403,7 @@ def cut_planes(
     """Subtract strips from planes, or only measure what they would remove.
 
     Args:
-        first, offsets, nodes: see `twin.geometry.strips.Strips`.
+        first, offsets, nodes, fresh: see `twin.geometry.strips.Strips`.
         grid: lower u, lower v, cell size.
         used: shape (1,), number of cells in use.
         cursor: shape (3,): plane, column, tile to go on from; 0 at the first call, kept between calls.
@@ -447,6 +448,13 @@ def cut_planes(
                     hi_min, hi_max = min(hi_min, hi), max(hi_max, hi)
                     if nodes[end, 0] >= a1:
                         break
+                cuts = False
+                for k in range(node, end + 1):
+                    cuts = cuts or fresh[k]
+                if not cuts:
+                    cursor[2] = 0
+                    column += 1
+                    continue
                 tile = max(max(0, int(math.floor((lo_min - v_low) / h))), cursor[2])
                 last_tile = min(tiles - 1, int(math.floor((hi_max - v_low) / h)))
                 spans = a0 == c0 and a1 == c1

@@ -18,11 +18,14 @@ class Strips:
         first: index of the first plane.
         offsets: shape (planes + 1,), where each plane's nodes begin.
         nodes: shape (n, 3): u increasing on each plane, lo (convex in u), hi (concave in u), lo <= hi.
+        fresh: shape (n,), False where the strip holds no material, because it has been cut already; between two such
+            nodes nothing is cut.
     """
 
     first: int
     offsets: NDArray[np.int64]
     nodes: FloatArray
+    fresh: NDArray[np.bool_]
 
     @property
     def planes(self) -> int:

@@ -20,6 +20,8 @@ _GOLDEN = 0.6180339887498949
 _SEARCH_STEPS = 42
 _START_INTERVALS = 8
 _MAX_DEPTH = 7
+#: Sections that differ by less than this part of the tool's radius are the same but for rounding.
+_SAME_SECTION = 1e-12
 
 
 @njit(cache=True, nogil=True)
@@ -350,6 +352,30 @@ def _off_chord(u: float, v: float, ua: float, va: float, ub: float, vb: float) -
 
 
 @njit(cache=True, nogil=True)
+def _is_new(
+    shape: FloatArray,
+    horizontal: bool,
+    start: FloatArray,
+    still: FloatArray,
+    w: float,
+    u: float,
+    lo: float,
+    hi: float,
+    top: float,
+    same: float,
+) -> bool:
+    """Whether a section reaches beyond that of the tool standing at the start, below the top of the material."""
+    if not lo <= hi:
+        return True
+    lo_still, hi_still = _strip_at(shape, horizontal, start, still, w, u)
+    if not lo_still <= hi_still:
+        return True
+    if not horizontal:
+        hi, hi_still = min(hi, top), min(hi_still, top)
+    return lo < lo_still - same or hi > hi_still + same
+
+
+@njit(cache=True, nogil=True)
 def section_nodes(
     shape: FloatArray,
     horizontal: bool,
@@ -359,18 +385,29 @@ def section_nodes(
     pitch: float,
     planes: int,
     chord: float,
+    follows: bool,
+    top: float,
     offsets: NDArray[np.int64],
     nodes: FloatArray,
+    fresh: NDArray[np.bool_],
 ) -> int:
     """Strips of a swept tool on a run of planes, as `twin.geometry.strips.Strips` holds them.
 
     Nodes are placed by halving until no chord of lo or hi stands off its curve by more than ``chord``, evenly in the
     angle whose cosine is u, which follows a round section's vertical ends.
 
+    Args:
+        follows: the tool's place at the start has been cut already. Then nodes where the section is no more than that
+            of the tool standing there are not fresh, and no chords are refined between them: they cut nothing new.
+        top: height above which there is no material; for vertical planes.
+        fresh: shape as the rows of ``nodes``, filled.
+
     Returns:
         Number of nodes written, or -1 when ``nodes`` is too short.
     """
     stack = np.empty((_MAX_DEPTH + 2, 5))
+    still = np.zeros(3)
+    same = _SAME_SECTION * shape[6]
     written = 0
     offsets[0] = 0
     # planes that the whole tool passes straight through have one section
@@ -385,6 +422,7 @@ def section_nodes(
                 return -1
             for n in range(written, written + count):
                 nodes[n, 0], nodes[n, 1], nodes[n, 2] = nodes[n - count, 0], nodes[n - count, 1], nodes[n - count, 2]
+                fresh[n] = fresh[n - count]
             written += count
             offsets[i + 1] = written
             continue
@@ -399,11 +437,13 @@ def section_nodes(
             return -1
         ua = middle - half * inset
         la, ha = _strip_at(shape, horizontal, start, move, w, ua)
+        new_a = not follows or _is_new(shape, horizontal, start, still, w, ua, la, ha, top, same)
         first_node = written
         if la <= ha:
             nodes[written, 0] = ua
             nodes[written, 1] = la
             nodes[written, 2] = ha
+            fresh[written] = new_a
             written += 1
         for piece in range(_START_INTERVALS):
             depth = 0
@@ -414,15 +454,19 @@ def section_nodes(
             stack[0, 1] = ub
             stack[0, 2] = lb
             stack[0, 3] = hb
+            new_b = not follows or _is_new(shape, horizontal, start, still, w, ub, lb, hb, top, same)
+            stack[0, 4] = 1.0 if new_b else 0.0
             while depth >= 0:
                 phi_b = stack[depth, 0]
                 ub = stack[depth, 1]
                 lb = stack[depth, 2]
                 hb = stack[depth, 3]
+                new_b = stack[depth, 4] > 0.0
                 phi = 0.5 * (phi_a + phi_b)
                 um = middle - half * inset * math.cos(phi)
                 lm, hm = _strip_at(shape, horizontal, start, move, w, um)
-                flat = depth >= _MAX_DEPTH or not (la <= ha and lb <= hb and lm <= hm)
+                new_m = not follows or _is_new(shape, horizontal, start, still, w, um, lm, hm, top, same)
+                flat = not (new_a or new_b or new_m) or depth >= _MAX_DEPTH or not (la <= ha and lb <= hb and lm <= hm)
                 if not flat:
                     flat = _off_chord(um, lm, ua, la, ub, lb) <= chord and _off_chord(um, hm, ua, ha, ub, hb) <= chord
                 if flat:
@@ -432,8 +476,10 @@ def section_nodes(
                         nodes[written, 0] = ub
                         nodes[written, 1] = lb
                         nodes[written, 2] = hb
+                        fresh[written] = new_b
                         written += 1
                     phi_a = phi_b
+                    new_a = new_b
                     ua = ub
                     la = lb
                     ha = hb
@@ -444,6 +490,7 @@ def section_nodes(
                     stack[depth, 1] = um
                     stack[depth, 2] = lm
                     stack[depth, 3] = hm
+                    stack[depth, 4] = 1.0 if new_m else 0.0
         if written - first_node < 2:
             written = first_node
         offsets[i + 1] = written

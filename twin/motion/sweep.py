@@ -16,7 +16,7 @@ from twin.tools.shape import ToolShape
 
 #: Order of the coordinates (normal, u, v) of each slice family.
 _ORDER = ((0, 1, 2), (1, 0, 2), (2, 0, 1))
-_EMPTY = Strips(0, np.zeros(1, dtype=np.int64), np.zeros((0, 3)))
+_EMPTY = Strips(0, np.zeros(1, dtype=np.int64), np.zeros((0, 3)), np.zeros(0, dtype=np.bool_))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,13 +85,34 @@ class Sweep:
             np.maximum(self.start_mm, self.end_mm) + reach_high,
         )
 
-    def strips(self, axis: int, low_mm: float, pitch_mm: float, count: int, chord_mm: float) -> Strips:
+    def follows(self, earlier: Sweep | None) -> bool:
+        """Whether this sweep begins where an earlier one of the same body ended."""
+        return (
+            earlier is not None
+            and bool(np.array_equal(earlier.end_mm, self.start_mm))
+            and bool(np.array_equal(earlier.body.parameters, self.body.parameters))
+        )
+
+    def strips(
+        self,
+        axis: int,
+        low_mm: float,
+        pitch_mm: float,
+        count: int,
+        chord_mm: float,
+        *,
+        start_is_cut: bool = False,
+        top_mm: float = math.inf,
+    ) -> Strips:
         """Sections by the planes of one slice family that the sweep may touch.
 
         Args:
             axis: 0, 1 or 2, the normal of the planes.
             low_mm, pitch_mm, count: planes at low + (k + 1/2) pitch, k from 0 to count - 1.
             chord_mm: how far a chord may stand off the curve.
+            start_is_cut: the body's volume at the start has been cut already, so that only what the motion adds need
+                be right; the rest is marked as not fresh.
+            top_mm: height above which there is no material.
         """
         low, high = self.bounds_mm
         first = max(0, math.ceil((low[axis] - low_mm) / pitch_mm - 0.5))
@@ -106,6 +127,7 @@ class Sweep:
         room = 128 * planes + 2048
         while True:
             nodes = np.empty((room, 3))
+            fresh = np.empty(room, dtype=np.bool_)
             written = kernels.section_nodes(
                 self.body.parameters,
                 axis == 2,
@@ -115,11 +137,14 @@ class Sweep:
                 pitch_mm,
                 planes,
                 chord_mm,
+                start_is_cut,
+                top_mm,
                 offsets,
                 nodes,
+                fresh,
             )
             if written >= 0:
-                return Strips(first, offsets, nodes[:written])
+                return Strips(first, offsets, nodes[:written], fresh[:written])
             room *= 2
 
 

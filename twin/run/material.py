@@ -19,6 +19,8 @@ from twin.workpiece.trislice import TriSlices
 #: Sweeps wait until the tool has gone on by this many slice pitches, or until this many are waiting.
 PENDING_PITCHES = 10.0
 PENDING_SWEEPS = 48
+#: Sweeps whose time has come are subtracted so many at once, so that threads have enough to do.
+TOGETHER = 8
 #: A sweep this near to a motion's line lies on it, mm.
 SAME_LINE_MM = 1e-9
 
@@ -74,7 +76,8 @@ class Material:
             self._wait(Sweep(tool.cutter, start_mm, end_mm), tool.number)
             return
         self.flush()
-        volume = self._subtract(Sweep(tool.cutter, start_mm, end_mm), tool.number)
+        self._waiting.append((Sweep(tool.cutter, start_mm, end_mm), tool.number))
+        volume = self._subtract(1)
         if self.significant(volume):
             yield forbidden, volume
 
@@ -90,14 +93,18 @@ class Material:
     def _wait(self, sweep: Sweep, tool: int) -> None:
         self._waiting.append((sweep, tool))
         newer = sum(s.length_mm for s, _ in self._waiting) - self._waiting[0][0].length_mm
-        while len(self._waiting) > 1 and (newer >= self._window_mm or len(self._waiting) > PENDING_SWEEPS):
-            self._subtract(*self._waiting.popleft())
-            newer -= self._waiting[0][0].length_mm
+        done = 0
+        while len(self._waiting) - done > 1 and (
+            newer >= self._window_mm or len(self._waiting) - done > PENDING_SWEEPS
+        ):
+            done += 1
+            newer -= self._waiting[done][0].length_mm
+        if done >= min(TOGETHER, len(self._waiting) - 1):
+            self._subtract(done)
 
     def flush(self) -> None:
         """Subtract everything that waits."""
-        while self._waiting:
-            self._subtract(*self._waiting.popleft())
+        self._subtract(len(self._waiting))
 
     def volume_inside(self, tool: ToolSetup, tip_mm: FloatArray) -> float:
         """Volume of material that the cutting part stands in, not moving."""
@@ -108,12 +115,15 @@ class Material:
         """Whether a volume is more than a touch within tolerance."""
         return volume_mm3 > self._tolerance.contact_mm3
 
-    def _subtract(self, sweep: Sweep, tool: int) -> float:
-        volume = self._removal.cut(sweep)
-        if volume > 0.0:
-            self.removed_mm3[tool] = self.removed_mm3.get(tool, 0.0) + volume
-            self.changed.append(sweep.bounds_mm)
-        return volume
+    def _subtract(self, count: int) -> float:
+        """Subtract the sweeps that have waited longest; returns the removed volume."""
+        taken = [self._waiting.popleft() for _ in range(count)]
+        volumes = self._removal.cut_all([sweep for sweep, _ in taken]) if taken else np.zeros(0)
+        for (sweep, tool), volume in zip(taken, volumes.tolist(), strict=True):
+            if volume > 0.0:
+                self.removed_mm3[tool] = self.removed_mm3.get(tool, 0.0) + volume
+                self.changed.append(sweep.bounds_mm)
+        return float(volumes.sum())
 
     def close(self) -> None:
         """Let worker threads go."""

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 from typing import Self
 
 import numpy as np
 
+from twin.arrays import FloatArray
 from twin.motion.sweep import Sweep
 from twin.workpiece.trislice import TriSlices
+
+#: Families in the order in which threads take them: those across the tool axis cost most.
+_ORDER = (0, 1, 2)
 
 
 class Removal:
@@ -22,6 +27,7 @@ class Removal:
     def __init__(self, workpiece: TriSlices, chord_mm: float, threads: int = 2) -> None:
         self.workpiece = workpiece
         self._chord_mm = chord_mm
+        self._last: Sweep | None = None
         self._pool = ThreadPoolExecutor(max_workers=threads) if threads > 1 else None
 
     def cut(self, sweep: Sweep, *, apply: bool = True) -> float:
@@ -30,19 +36,36 @@ class Removal:
         Returns:
             Removed volume in mm3: the mean of what the three families say, each by the midpoint rule.
         """
-        low, high = sweep.bounds_mm
-        if np.any(high <= self.workpiece.low_mm) or np.any(low >= self.workpiece.high_mm):
-            return 0.0
-        if self._pool is None:
-            volumes = [self._cut_family(axis, sweep, apply) for axis in range(3)]
-        else:
-            volumes = list(self._pool.map(lambda axis: self._cut_family(axis, sweep, apply), range(3)))
-        return sum(volumes) / 3.0
+        return float(self.cut_all([sweep], apply=apply)[0])
 
-    def _cut_family(self, axis: int, sweep: Sweep, apply: bool) -> float:
+    def cut_all(self, sweeps: Sequence[Sweep], *, apply: bool = True) -> FloatArray:
+        """Take the volumes of several sweeps out, one after the other.
+
+        Returns:
+            Removed volume of each, as `cut` gives it.
+        """
+
+        def family(axis: int) -> list[float]:
+            earlier = (self._last, *sweeps[:-1]) if apply else [None] * len(sweeps)
+            return [
+                self._cut_family(axis, sweep, apply, sweep.follows(last)) if self._touched(sweep) else 0.0
+                for sweep, last in zip(sweeps, earlier, strict=True)
+            ]
+
+        volumes = list(map(family, _ORDER) if self._pool is None else self._pool.map(family, _ORDER))
+        if apply and sweeps:
+            self._last = sweeps[-1]
+        return np.asarray(np.sum(volumes, axis=0) / 3.0)
+
+    def _touched(self, sweep: Sweep) -> bool:
+        low, high = sweep.bounds_mm
+        return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
+
+    def _cut_family(self, axis: int, sweep: Sweep, apply: bool, follows: bool) -> float:
         piece = self.workpiece
         low, pitch = float(piece.low_mm[axis]), float(piece.pitch_mm[axis])
-        strips = sweep.strips(axis, low, pitch, piece.count(axis), self._chord_mm)
+        top = float(piece.high_mm[2])
+        strips = sweep.strips(axis, low, pitch, piece.count(axis), self._chord_mm, start_is_cut=follows, top_mm=top)
         return float(np.sum(piece.cut(axis, strips, apply=apply)) * pitch)
 
     def close(self) -> None:

@@ -39,7 +39,7 @@ def strip(outline: FloatArray) -> Strips:
         values = np.interp(u[on], [u0, u1], [v0, v1]) if u1 > u0 else None
         for v in (v0, v1) if values is None else (values,):
             lo[on], hi[on] = np.minimum(lo[on], v), np.maximum(hi[on], v)
-    return Strips(0, np.array([0, len(u)]), np.column_stack((u, lo, hi)))
+    return Strips(0, np.array([0, len(u)]), np.column_stack((u, lo, hi)), np.ones(len(u), dtype=np.bool_))
 
 
 def capsule(rng: np.random.Generator) -> FloatArray:
