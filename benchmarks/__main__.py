@@ -6,7 +6,7 @@ python -m benchmarks
 import subprocess
 import sys
 
-STAGES = ("replay", "removal", "archive", "gcode")
+STAGES = ("speed", "surface", "replay", "removal", "archive", "gcode")
 
 if __name__ == "__main__":
     for stage in STAGES:

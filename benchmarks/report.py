@@ -20,7 +20,7 @@ def commit() -> str:
     return (told[0] or "unknown") + ("+" if told[1] else "")
 
 
-def report(benchmark: str, **figures: float | str | None) -> None:
+def report(benchmark: str, **figures: object) -> None:
     """Print one JSON object. Peak memory is that of the whole process up to here."""
     facts = {
         "peak_memory_mib": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
