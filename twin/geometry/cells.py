@@ -43,8 +43,10 @@ class CellFamily:
         self.columns = max(1, math.ceil((high_uv_mm[0] - low_uv_mm[0]) / cell_mm * (1.0 - 1e-12)))
         self.tiles = max(1, math.ceil((high_uv_mm[1] - low_uv_mm[1]) / cell_mm * (1.0 - 1e-12)))
         self.area_mm2 = np.array([r.area_mm2 for r in regions], dtype=np.float64)
-        shape = (len(regions), self.columns, math.ceil(self.tiles / kernels.PAGE_TILES))
-        self.page: NDArray[np.int64] = np.full(shape, -1, dtype=np.int64)
+        self.row: NDArray[np.int64] = np.full(len(regions), -1, dtype=np.int64)
+        self._rows = 0
+        shape = (0, self.columns, math.ceil(self.tiles / kernels.PAGE_TILES))
+        self.page: NDArray[np.int64] = np.zeros(shape, dtype=np.int64)
         self._own: NDArray[np.bool_] = np.zeros(shape, dtype=np.bool_)
         self._regions = regions
         self._alike = Counter(map(id, regions))
@@ -68,22 +70,33 @@ class CellFamily:
     def ensure(self, first: int, last: int) -> None:
         """Build the planes ``first`` to ``last - 1``, as far as they exist, that are not built yet."""
         first = max(0, first)
-        for k in np.flatnonzero(self.page[first:last, 0, 0] < 0) if last > first else ():
+        for k in np.flatnonzero(self.row[first:last] < 0) if last > first else ():
             self._build(first + int(k))
 
     def _build(self, k: int) -> None:
         region = id(self._regions[k])
-        if region not in self._templates:
-            pages = self._fill(k)
-            if self._alike[region] == 1:
-                self.page[k], self._own[k] = pages, True
-                return
-            self._templates[region] = pages
-        self.page[k] = self._templates[region]
+        alone = self._alike[region] == 1
+        if alone or region not in self._templates:
+            self._templates[region] = self._fill(k)
+        if self._rows == len(self.page):
+            self._grow_rows()
+        row, self._rows = self._rows, self._rows + 1
+        self.page[row], self._own[row] = self._templates[region], alone
+        if alone:
+            del self._templates[region]
+        self.row[k] = row
+
+    def _grow_rows(self) -> None:
+        rows = min(len(self.row), max(64, 2 * len(self.page)))
+        for name in ("page", "_own"):
+            old = getattr(self, name)
+            new = np.empty((rows, *old.shape[1:]), dtype=old.dtype)
+            new[: len(old)] = old
+            setattr(self, name, new)
 
     def _fill(self, k: int) -> NDArray[np.int64]:
         """New cells for a plane's region; returns the first of each page."""
-        cells = self.page[k].size * kernels.PAGE_TILES
+        cells = math.prod(self.page.shape[1:]) * kernels.PAGE_TILES
         place = int(self._used[0])
         if place + cells > len(self.state):
             self._grow_cells(place + cells)
@@ -139,6 +152,7 @@ class CellFamily:
                 strips.fresh,
                 self.grid,
                 self.tiles,
+                self.row,
                 self.page,
                 self._own,
                 self._used,
@@ -162,7 +176,7 @@ class CellFamily:
         self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> lines.LineEnds:
         """Lines through planes, as `SliceStore.line_ends` gives them."""
-        for k in planes[self.page[planes, 0, 0] < 0]:
+        for k in planes[self.row[planes] < 0]:
             self.ensure(int(k), int(k) + 1)
         kernel = line_kernels.cell_v_lines if fixed else line_kernels.cell_u_lines
         return lines.collect(
@@ -171,7 +185,7 @@ class CellFamily:
                 at_mm,
                 window_mm,
                 lines.MERGE_MM,
-                self.page[planes],
+                self.page[self.row[planes]],
                 self.grid,
                 self.tiles,
                 *(self.state, self.start, self.size, self.pool),
@@ -183,13 +197,13 @@ class CellFamily:
 
     def region(self, k: int) -> Region:
         """Material on a plane as rings."""
-        if self.page[k, 0, 0] < 0:
+        if self.row[k] < 0:
             return self._regions[k]
         room = 256 + 4 * self.columns
         while True:
             out = np.empty((room, 6))
             n = kernels.plane_trapezoids(
-                self.page[k],
+                self.page[self.row[k]],
                 self.grid,
                 self.tiles,
                 self.state,

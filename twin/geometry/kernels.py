@@ -9,9 +9,10 @@ Cutting a strip lo(u) <= v <= hi(u) keeps the parts of the edges that are not ab
 parts of lo and hi that have an odd number of edges above them. Every part is classified once and both uses share the
 same u, so parity cannot leak.
 
-Cells lie in pages of 8 tiles of one column: ``page[k, column, block]`` is the index of the first cell of a page of
-plane k, -1 while the plane is not built. Planes that begin alike share pages until one is cut: then it gets its own
-(``own``), with the same edges, which are never written where they belong to another cell (``room`` is 0).
+Cells lie in pages of 8 tiles of one column: ``page[row[k], column, block]`` is the index of the first cell of a
+page of plane k; ``row[k]`` is -1 while the plane is not built. Planes that begin alike share pages until one is cut:
+then it gets its own (``own``), with the same edges, which are never written where they belong to another cell
+(``room`` is 0).
 """
 
 from __future__ import annotations
@@ -358,7 +359,7 @@ def _own_page(
     size: NDArray[np.int64],
     room: NDArray[np.int64],
 ) -> bool:
-    """Give a plane cells of its own for a page, if it has none yet; False when there are no cells left."""
+    """Give row k of the pages cells of its own for a page, if it has none yet; False when there are no cells left."""
     if own[k, column, block]:
         return True
     old, new = page[k, column, block], used[0]
@@ -383,6 +384,7 @@ def cut_planes(
     fresh: NDArray[np.bool_],
     grid: FloatArray,
     tiles: int,
+    row: NDArray[np.int64],
     page: NDArray[np.int64],
     own: NDArray[np.bool_],
     used: NDArray[np.int64],
@@ -418,8 +420,8 @@ def cut_planes(
     while cursor[0] < len(offsets) - 1:
         i = cursor[0]
         n0, n1 = offsets[i], offsets[i + 1] - 1
-        plane = first + i
-        if n1 <= n0 or page[plane, 0, 0] < 0:
+        plane = row[first + i]
+        if n1 <= n0 or plane < 0:
             cursor[0] += 1
             continue
         u_first, u_last = nodes[n0, 0], nodes[n1, 0]
@@ -488,11 +490,11 @@ def cut_planes(
                     before = 0.0
                     if pieces > 0:
                         if state[cell] == FULL:
-                            row = len(out) - 1
-                            out[row, 0], out[row, 1], out[row, 2], out[row, 3] = c0, top, c1, top
-                            out[row, 4] = 1.0
+                            last = len(out) - 1
+                            out[last, 0], out[last, 1], out[last, 2], out[last, 3] = c0, top, c1, top
+                            out[last, 4] = 1.0
                             before = (c1 - c0) * (top - floor)
-                            count = _cut_edges(out, row, 1, segments, pieces, toggles_lo, toggles_hi, out[:row])
+                            count = _cut_edges(out, last, 1, segments, pieces, toggles_lo, toggles_hi, out[:last])
                         else:
                             before = _cell_area(pool, start[cell], size[cell], floor)
                             count = _cut_edges(
@@ -647,6 +649,7 @@ def contains(
     pitch: float,
     grid: FloatArray,
     tiles: int,
+    row: NDArray[np.int64],
     page: NDArray[np.int64],
     state: NDArray[np.int8],
     start: NDArray[np.int64],
@@ -660,7 +663,7 @@ def contains(
 
     Points whose votes are below ``needed_low`` or above ``needed_high`` already are left alone: their case is settled.
     """
-    planes, columns = len(page), page.shape[1]
+    planes, columns = len(row), page.shape[1]
     u_low, v_low, h = grid[0], grid[1], grid[2]
     for i in range(len(points)):
         if votes[i] < needed_low or votes[i] > needed_high:
@@ -671,10 +674,9 @@ def contains(
         tile = int(math.floor((v - v_low) / h))
         if k < 0 or k >= planes or column < 0 or column >= columns or tile < 0 or tile >= tiles:
             continue
-        first = page[k, column, tile >> PAGE_BITS]
-        if first < 0:
+        if row[k] < 0:
             continue
-        cell = first + (tile & _IN_PAGE)
+        cell = page[row[k], column, tile >> PAGE_BITS] + (tile & _IN_PAGE)
         kind = state[cell]
         if kind == FULL or (kind == PARTIAL and _odd_above(u, v, start[cell], start[cell] + size[cell], pool)):
             votes[i] += 1

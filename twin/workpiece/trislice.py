@@ -158,6 +158,7 @@ class CellSlices(TriSlices):
             self.pitch_mm[axis],
             family.grid,
             family.tiles,
+            family.row,
             family.page,
             family.state,
             family.start,
