@@ -52,15 +52,17 @@ class Replay:
 
     Args:
         strict: end at the first collision with a `CollisionError` instead of reporting it and going on.
-        threads: how many work on slices and steps; results do not depend on it.
-        preview: whether patches of the workpiece's surface are among the records.
+        threads: how many work on slices and steps, None for all cores; results do not depend on it.
+        preview: whether patches of the workpiece's surface are among the records, at key frames, where motions are
+            divided.
 
     Raises:
         TwinError, gcode.errors.GcodeError: a job, tool, stock or program that cannot be replayed.
     """
 
-    def __init__(self, job: Job, *, strict: bool = False, threads: int = THREADS, preview: bool = True) -> None:
+    def __init__(self, job: Job, *, strict: bool = False, threads: int | None = None, preview: bool = True) -> None:
         self.job = job
+        threads = THREADS if threads is None else threads
         self._strict = strict
         self._tolerance = Tolerance.for_pitch(job.simulation.slice_pitch_mm)
         slices = stock_slices(job)

@@ -38,7 +38,7 @@ class FakeReplay:
         self.job: Job | None = None
         self.closed = False
 
-    def open(self, job: Job) -> FakeReplay:
+    def open(self, job: Job, threads: int | None = None) -> FakeReplay:
         """What `twin.cli.replaying.open_run` does."""
         self.job = job
         return self

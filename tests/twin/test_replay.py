@@ -13,7 +13,7 @@ import pytest
 from gcode.errors import GcodeError
 from twin.errors import CollisionError, JobError, ReplayError
 from twin.job import job_from_dict
-from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step
+from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, WorkpiecePatch
 from twin.replay import Replay
 
 HEAD = "G21 G90 G94 G17 G40 G49 G80\nG54\nT1 M6\nS3000 M3\nG43 H1\n"
@@ -31,7 +31,7 @@ CUTTING = {"Ktc": 800.0, "Kte": 10.0, "Krc": 300.0, "Kre": 12.0, "Kac": 100.0, "
 
 
 def make(folder: Path, program: str, **changes: Any) -> Replay:
-    strict = changes.pop("strict", False)
+    options = {name: changes.pop(name) for name in ("strict", "threads", "preview") if name in changes}
     (folder / "part.nc").write_text(program)
     data: dict[str, Any] = {
         "program": {"file": "part.nc"},
@@ -41,7 +41,7 @@ def make(folder: Path, program: str, **changes: Any) -> Replay:
         "simulation": {"slice_pitch_mm": 0.25, "step_mm": 0.5, "axial_step_mm": 0.25, "angle_step_deg": 5.0},
     }
     data.update(changes)
-    return Replay(job_from_dict(data, folder), strict=strict)
+    return Replay(job_from_dict(data, folder), **options)
 
 
 def run(replay: Replay) -> list[Record]:
@@ -107,6 +107,26 @@ def test_a_full_circle_and_a_helix_remove_a_ring(tmp_path: Path) -> None:
     # all directions feed at 300 mm/min through a block 20 mm wide: ring from radius 2 to 8, 3 mm deep
     assert total.removed_volume_mm3 == pytest.approx(math.pi * (64.0 - 4.0) * 3.0, rel=5e-3)
     assert total.collisions == 0
+
+
+def test_without_key_frames_there_are_no_patches(tmp_path: Path) -> None:
+    program = HEAD + "G0 X-6 Y6\nZ-2\nG1 X12 F300\nG0 Z20\nM30\n"
+    full, bare = (run(make(tmp_path, program, preview=preview)) for preview in (True, False))
+    assert any(isinstance(record, WorkpiecePatch) for record in full)
+    assert not any(isinstance(record, WorkpiecePatch) for record in bare)
+    assert summary_of(bare).removed_volume_mm3 == pytest.approx(summary_of(full).removed_volume_mm3, rel=1e-4)
+    assert summary_of(bare).mean_force_n == pytest.approx(summary_of(full).mean_force_n, rel=5e-3)
+
+
+def test_threads_change_no_number(tmp_path: Path) -> None:
+    """Bit for bit: steps are solved in parts of one size, and each family of slices by one thread."""
+    program = HEAD + "G0 X-6 Y6\nZ-2\nG1 X12 F300\nG2 X18 Y12 I0 J6 Z-3\nG1 X14.1 Y13.3\nX16 Y2 Z-1\nG0 Z20\nM30\n"
+    runs = [run(make(tmp_path, program, threads=n)) for n in (1, 2, 3)]
+    assert len({summary_of(records).digest for records in runs}) == 1
+    for first, *others in zip(*map(steps_of, runs), strict=True):
+        for other in others:
+            assert np.array_equal(other.samples.force_n, first.samples.force_n)
+            assert other.engagement == first.engagement
 
 
 def test_equal_runs_have_equal_digests_and_other_runs_do_not(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +12,13 @@ from twin.cli import exit_codes
 
 if TYPE_CHECKING:
     from twin.cli.replaying import Outcome
+
+
+class Engine(StrEnum):
+    """Implementations of the slices."""
+
+    FAST = "fast"
+    REFERENCE = "reference"
 
 
 def replay(
@@ -33,6 +41,13 @@ def replay(
     no_forces: Annotated[
         bool, typer.Option("--no-forces", help="Leave the forces out, whatever coefficients the job has.")
     ] = False,
+    engine: Annotated[
+        Engine | None,
+        typer.Option(help="Slices: fast, or the plain reference; the job's if not given.", show_default=False),
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option(min=1, max=64, help="Threads; all cores if not given.", show_default=False)
+    ] = None,
 ) -> None:
     """Replay the NC program of a job: remove material, compute forces, keep the run.
 
@@ -46,9 +61,10 @@ def replay(
 
     job = load_job(job_file)
     job = job.without_forces() if no_forces else job
+    job = job.with_store(engine.value) if engine is not None else job
     mcap, rrd = mcap or job.output.mcap, rrd or job.output.rrd
     with opened(mcap, rrd, view=view, force=force) as write, progress(quiet=quiet or as_json) as line:
-        outcome = replay_job(job, line, write, strict=strict)
+        outcome = replay_job(job, line, write, strict=strict, threads=threads)
     if as_json:
         _print_json(outcome, {"job": job_file, "mcap": mcap, "rrd": rrd}, job.output.force_on)
     elif not quiet:

@@ -55,11 +55,11 @@ class Outcome:
     at_end: SurfaceMesh | None = None
 
 
-def open_run(job: Job) -> Run:
+def open_run(job: Job, threads: int | None = None) -> Run:
     """Read the program, slice the stock, make the tools ready."""
     from twin.replay import Replay
 
-    return Replay(job)
+    return Replay(job, threads=threads)
 
 
 def replay_job(
@@ -68,6 +68,7 @@ def replay_job(
     write: Write = lambda _record: None,
     *,
     strict: bool = False,
+    threads: int | None = None,
     at_end: Callable[[Run], SurfaceMesh | None] = lambda _run: None,
 ) -> Outcome:
     """Replay a job into its outputs, until its end, a wish to stop, or a collision when strict.
@@ -77,13 +78,14 @@ def replay_job(
     Args:
         write: takes every record.
         strict: end at the first collision, which is still written.
+        threads: how many to work with, None for all cores.
         at_end: called with the run before it is closed.
 
     Raises:
         TwinError, GcodeError: what cannot be replayed or written.
     """
     begin = time.perf_counter()
-    with closing(open_run(job)) as run, StopWish() as wish:
+    with closing(open_run(job, threads)) as run, StopWish() as wish:
         ready = time.perf_counter()
         watch = Watch()
         refused = summary = None

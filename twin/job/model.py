@@ -227,6 +227,10 @@ class Job(JobFile):
         known = ", ".join(str(tool.number) for tool in self.tools)
         raise JobError(str(self.path), [f"tools: no tool has the number {number}; expected one of {known}"])
 
+    def with_store(self, store: str) -> Job:
+        """The same job with another implementation of the slices."""
+        return self.model_copy(update={"simulation": self.simulation.model_copy(update={"store": store})})
+
     def without_forces(self) -> Job:
         """The same job without cutting coefficients."""
         tools = tuple(tool.model_copy(update={"cutting": None}) for tool in self.tools)

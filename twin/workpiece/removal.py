@@ -27,7 +27,7 @@ class Removal:
     def __init__(self, workpiece: TriSlices, chord_mm: float, threads: int = 2) -> None:
         self.workpiece = workpiece
         self._chord_mm = chord_mm
-        self._last: Sweep | None = None
+        self._last: tuple[TriSlices, Sweep] | None = None
         self._pool = ThreadPoolExecutor(max_workers=threads) if threads > 1 else None
 
     def cut(self, sweep: Sweep, *, apply: bool = True) -> float:
@@ -44,17 +44,18 @@ class Removal:
         Returns:
             Removed volume of each, as `cut` gives it.
         """
+        last = self._last[1] if self._last is not None and self._last[0] is self.workpiece else None
 
         def family(axis: int) -> list[float]:
-            earlier = (self._last, *sweeps[:-1]) if apply else [None] * len(sweeps)
+            earlier = (last, *sweeps[:-1]) if apply else [None] * len(sweeps)
             return [
-                self._cut_family(axis, sweep, apply, sweep.follows(last)) if self._touched(sweep) else 0.0
-                for sweep, last in zip(sweeps, earlier, strict=True)
+                self._cut_family(axis, sweep, apply, sweep.follows(before)) if self._touched(sweep) else 0.0
+                for sweep, before in zip(sweeps, earlier, strict=True)
             ]
 
         volumes = list(map(family, _ORDER) if self._pool is None else self._pool.map(family, _ORDER))
         if apply and sweeps:
-            self._last = sweeps[-1]
+            self._last = (self.workpiece, sweeps[-1])
         return np.asarray(np.sum(volumes, axis=0) / 3.0)
 
     def _touched(self, sweep: Sweep) -> bool:
