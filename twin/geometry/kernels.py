@@ -9,10 +9,11 @@ Cutting a strip lo(u) <= v <= hi(u) keeps the parts of the edges that are not ab
 parts of lo and hi that have an odd number of edges above them. Every part is classified once and both uses share the
 same u, so parity cannot leak.
 
-Cells lie in pages of 8 tiles of one column: ``page[row[k], column, block]`` is the index of the first cell of a
-page of plane k; ``row[k]`` is -1 while the plane is not built. Planes that begin alike share pages until one is cut:
-then it gets its own (``own``), with the same edges, which are never written where they belong to another cell
-(``room`` is 0).
+Cells lie in pages of 8 tiles of one column, and each column has a table of its pages: ``page[table[k, column], block]``
+is the index of the first cell of a page on plane k; ``table[k, column]`` is 0 while the plane is not built. Columns
+that begin alike, on one plane or on many, share their table until one is cut: then it gets its own (``own_table``),
+and each page that is cut becomes its own (``own``), with the same edges, which are never written where they belong to
+another cell (``room`` is 0). Pages without edges are shared between neighbouring columns, too.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from twin.arrays import FloatArray
 
 EMPTY, FULL, PARTIAL = 0, 1, 2
 #: What `cut_planes` and `fill_plane` return when they ran out of room, to be called again.
-DONE, POOL_FULL, SCRATCH_FULL, CELLS_FULL = 0, 1, 2, 3
+DONE, POOL_FULL, SCRATCH_FULL, CELLS_FULL, TABLES_FULL = 0, 1, 2, 3, 4
 _SMALLEST_BLOCK = 4
 #: Tiles in a page of cells: 2 ** 3.
 PAGE_BITS = 3
@@ -348,32 +349,43 @@ def _cut_edges(
 
 @njit(cache=True, nogil=True)
 def _own_page(
-    k: int,
+    plane: int,
     column: int,
     block: int,
+    table: NDArray[np.int64],
     page: NDArray[np.int64],
+    own_table: NDArray[np.bool_],
     own: NDArray[np.bool_],
     used: NDArray[np.int64],
     state: NDArray[np.int8],
     start: NDArray[np.int64],
     size: NDArray[np.int64],
     room: NDArray[np.int64],
-) -> bool:
-    """Give row k of the pages cells of its own for a page, if it has none yet; False when there are no cells left."""
-    if own[k, column, block]:
-        return True
-    old, new = page[k, column, block], used[0]
+) -> int:
+    """Give a column of a plane cells of its own for a page, if it has none yet; DONE, TABLES_FULL or CELLS_FULL."""
+    if not own_table[table[plane, column]]:
+        if used[1] >= len(page):
+            return TABLES_FULL
+        page[used[1]] = page[table[plane, column]]
+        own_table[used[1]] = True
+        own[used[1]] = False
+        table[plane, column] = used[1]
+        used[1] += 1
+    t = table[plane, column]
+    if own[t, block]:
+        return DONE
+    old, new = page[t, block], used[0]
     if new + PAGE_TILES > len(state):
-        return False
+        return CELLS_FULL
     for tile in range(PAGE_TILES):
         state[new + tile] = state[old + tile]
         start[new + tile] = start[old + tile]
         size[new + tile] = size[old + tile]
         room[new + tile] = 0
     used[0] += PAGE_TILES
-    page[k, column, block] = new
-    own[k, column, block] = True
-    return True
+    page[t, block] = new
+    own[t, block] = True
+    return DONE
 
 
 @njit(cache=True, nogil=True)
@@ -384,8 +396,9 @@ def cut_planes(
     fresh: NDArray[np.bool_],
     grid: FloatArray,
     tiles: int,
-    row: NDArray[np.int64],
+    table: NDArray[np.int64],
     page: NDArray[np.int64],
+    own_table: NDArray[np.bool_],
     own: NDArray[np.bool_],
     used: NDArray[np.int64],
     state: NDArray[np.int8],
@@ -407,21 +420,21 @@ def cut_planes(
     Args:
         first, offsets, nodes, fresh: see `twin.geometry.strips.Strips`.
         grid: lower u, lower v, cell size.
-        used: shape (1,), number of cells in use.
+        used: shape (2,), number of cells and of tables in use.
         cursor: shape (3,): plane, column, tile to go on from; 0 at the first call, kept between calls.
         apply: False leaves the planes as they are.
         removed: shape (planes,), area taken from each plane, added to.
 
     Returns:
-        DONE, or POOL_FULL / SCRATCH_FULL / CELLS_FULL: make room and call again with the same cursor.
+        DONE, or POOL_FULL / SCRATCH_FULL / CELLS_FULL / TABLES_FULL: make room and call again with the same cursor.
     """
     u_low, v_low, h = grid[0], grid[1], grid[2]
-    columns = page.shape[1]
+    columns = table.shape[1]
     while cursor[0] < len(offsets) - 1:
         i = cursor[0]
         n0, n1 = offsets[i], offsets[i + 1] - 1
-        plane = row[first + i]
-        if n1 <= n0 or plane < 0:
+        plane = first + i
+        if n1 <= n0 or table[plane, 0] == 0:
             cursor[0] += 1
             continue
         u_first, u_last = nodes[n0, 0], nodes[n1, 0]
@@ -462,7 +475,7 @@ def cut_planes(
                 spans = a0 == c0 and a1 == c1
                 while tile <= last_tile:
                     block = tile >> PAGE_BITS
-                    cell = page[plane, column, block] + (tile & _IN_PAGE)
+                    cell = page[table[plane, column], block] + (tile & _IN_PAGE)
                     floor = v_low + tile * h
                     top = v_low + (tile + 1) * h
                     if state[cell] == EMPTY:
@@ -474,11 +487,14 @@ def cut_planes(
                         else:
                             area = _cell_area(pool, start[cell], size[cell], floor)
                         if apply:
-                            if not _own_page(plane, column, block, page, own, used, state, start, size, room):
+                            answer = _own_page(
+                                plane, column, block, table, page, own_table, own, used, state, start, size, room
+                            )
+                            if answer != DONE:
                                 cursor[1] = column
                                 cursor[2] = tile
-                                return CELLS_FULL
-                            cell = page[plane, column, block] + (tile & _IN_PAGE)
+                                return answer
+                            cell = page[table[plane, column], block] + (tile & _IN_PAGE)
                             _release(cell, start, room, pool, free)
                             size[cell] = 0
                             state[cell] = EMPTY
@@ -505,11 +521,15 @@ def cut_planes(
                         cursor[2] = tile
                         return SCRATCH_FULL
                     if pieces > 0:
-                        if apply and not _own_page(plane, column, block, page, own, used, state, start, size, room):
-                            cursor[1] = column
-                            cursor[2] = tile
-                            return CELLS_FULL
-                        cell = page[plane, column, block] + (tile & _IN_PAGE)
+                        if apply:
+                            answer = _own_page(
+                                plane, column, block, table, page, own_table, own, used, state, start, size, room
+                            )
+                            if answer != DONE:
+                                cursor[1] = column
+                                cursor[2] = tile
+                                return answer
+                        cell = page[table[plane, column], block] + (tile & _IN_PAGE)
                         if apply and not _store(cell, out, count, state, start, size, room, pool, free):
                             cursor[1] = column
                             cursor[2] = tile
@@ -526,10 +546,14 @@ def cut_planes(
 @njit(cache=True, nogil=True)
 def fill_plane(
     edges: FloatArray,
-    cells: int,
+    alone: bool,
     grid: FloatArray,
-    columns: int,
     tiles: int,
+    tables: NDArray[np.int64],
+    page: NDArray[np.int64],
+    own_table: NDArray[np.bool_],
+    own: NDArray[np.bool_],
+    used: NDArray[np.int64],
     state: NDArray[np.int8],
     start: NDArray[np.int64],
     size: NDArray[np.int64],
@@ -545,19 +569,32 @@ def fill_plane(
 
     Args:
         edges: shape (n, 5), all non-vertical ring edges as (u0, v0, u1, v1, sign).
-        cells: first of the plane's cells; each column takes whole pages of them.
+        alone: no other plane will share these cells.
+        tables: shape (columns,), filled: the table of each column.
+        used: see `cut_planes`.
         work: shape (2 n + more, 5), scratch for the edges of one column; as ``out``.
         cursor: shape (1,): column to go on from.
 
     Returns:
-        DONE, POOL_FULL or SCRATCH_FULL, as `cut_planes`.
+        DONE or what ran out, as `cut_planes`.
     """
     u_low, v_low, h = grid[0], grid[1], grid[2]
-    stride = (tiles + _IN_PAGE) >> PAGE_BITS << PAGE_BITS
-    while cursor[0] < columns:
+    blocks = page.shape[1]
+    without_edges = False
+    while cursor[0] < len(tables):
         column = cursor[0]
+        if used[1] >= len(page):
+            return TABLES_FULL
+        cells = used[0]
+        if cells + blocks * PAGE_TILES > len(state):
+            return CELLS_FULL
         c0 = u_low + column * h
         c1 = u_low + (column + 1) * h
+        if without_edges and _go_on(edges, u_low + (column - 1) * h, c1):
+            tables[column] = tables[column - 1]
+            own_table[tables[column]] = False
+            cursor[0] += 1
+            continue
         n = 0
         for e in range(len(edges)):
             a, b = max(c0, edges[e, 0]), min(c1, edges[e, 2])
@@ -567,12 +604,13 @@ def fill_plane(
                 n = _emit(work, n, a, b, edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], edges[e, 4])
         repeats = False
         for tile in range(tiles):
-            top = v_low + (tile + 1) * h
+            floor, top = v_low + tile * h, v_low + (tile + 1) * h
             lowest = math.inf
             for e in range(n):
                 lowest = min(lowest, work[e, 1], work[e, 3])
             if repeats and lowest > top:
-                state[cells + column * stride + tile] = state[cells + column * stride + tile - 1]
+                state[cells + tile] = state[cells + tile - 1]
+                size[cells + tile] = 0
                 continue
             count = 0
             rest = 0
@@ -596,7 +634,7 @@ def fill_plane(
                     rest = _emit(work, rest, high0, high1, u0, v0, u1, v1, sign)
                 elif above0:
                     rest = _emit(work, rest, u0, u1, u0, v0, u1, v1, sign)
-                else:
+                elif v0 > floor or v1 > floor:  # an edge on the floor lies above no point of the cell
                     count = _emit(out, count, u0, u1, u0, v0, u1, v1, sign)
             toggles[:n_toggles].sort()
             for t in range(0, n_toggles, 2):
@@ -606,15 +644,67 @@ def fill_plane(
             # with all edges above, the next tile is like this one if this one is all material or none
             repeats = rest == n
             n = rest
-            cell = cells + column * stride + tile
+            cell = cells + tile
             closed = _spans_top(out, count, c0, c1, top)
             repeats = repeats and (closed or count == 0)
             if closed:
                 state[cell] = FULL
+                size[cell] = 0
             elif not _store(cell, out, count, state, start, size, room, pool, free):
                 return POOL_FULL
+        t, before = used[1], page[tables[max(0, column - 1)]]
+        new = column == 0
+        without_edges = True
+        for block in range(blocks):
+            at, most = cells + block * PAGE_TILES, min(PAGE_TILES, tiles - block * PAGE_TILES)
+            plain = PARTIAL not in state[at : at + most]
+            own[t, block] = alone and not plain
+            without_edges = without_edges and plain
+            if (
+                plain
+                and column > 0
+                and np.array_equal(state[at : at + most], state[before[block] : before[block] + most])
+            ):
+                page[t, block] = before[block]
+            else:
+                page[t, block] = _move_page(at, used, state, start, size, room)
+                new = True
+        tables[column] = t if new else tables[column - 1]
+        own_table[tables[column]] = alone and new
+        used[1] += new
         cursor[0] += 1
     return DONE
+
+
+@njit(cache=True, nogil=True)
+def _go_on(edges: FloatArray, begin: float, end: float) -> bool:
+    """Whether all edges between two u run level from the one to the other."""
+    for e in range(len(edges)):
+        if edges[e, 0] < end and edges[e, 2] > begin:
+            if edges[e, 0] > begin or edges[e, 2] < end or edges[e, 1] != edges[e, 3]:
+                return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _move_page(
+    cells: int,
+    used: NDArray[np.int64],
+    state: NDArray[np.int8],
+    start: NDArray[np.int64],
+    size: NDArray[np.int64],
+    room: NDArray[np.int64],
+) -> int:
+    """Move a page down to the first cells that are not in use; returns where it is then."""
+    to = used[0]
+    for tile in range(PAGE_TILES if to < cells else 0):
+        state[to + tile] = state[cells + tile]
+        start[to + tile] = start[cells + tile]
+        size[to + tile] = size[cells + tile]
+        room[to + tile] = room[cells + tile]
+        room[cells + tile] = 0
+    used[0] = to + PAGE_TILES
+    return to
 
 
 @njit(cache=True, nogil=True)
@@ -649,7 +739,7 @@ def contains(
     pitch: float,
     grid: FloatArray,
     tiles: int,
-    row: NDArray[np.int64],
+    table: NDArray[np.int64],
     page: NDArray[np.int64],
     state: NDArray[np.int8],
     start: NDArray[np.int64],
@@ -663,7 +753,7 @@ def contains(
 
     Points whose votes are below ``needed_low`` or above ``needed_high`` already are left alone: their case is settled.
     """
-    planes, columns = len(row), page.shape[1]
+    planes, columns = table.shape
     u_low, v_low, h = grid[0], grid[1], grid[2]
     for i in range(len(points)):
         if votes[i] < needed_low or votes[i] > needed_high:
@@ -674,9 +764,9 @@ def contains(
         tile = int(math.floor((v - v_low) / h))
         if k < 0 or k >= planes or column < 0 or column >= columns or tile < 0 or tile >= tiles:
             continue
-        if row[k] < 0:
+        if table[k, column] == 0:
             continue
-        cell = page[row[k], column, tile >> PAGE_BITS] + (tile & _IN_PAGE)
+        cell = page[table[k, column], tile >> PAGE_BITS] + (tile & _IN_PAGE)
         kind = state[cell]
         if kind == FULL or (kind == PARTIAL and _odd_above(u, v, start[cell], start[cell] + size[cell], pool)):
             votes[i] += 1
@@ -684,6 +774,7 @@ def contains(
 
 @njit(cache=True, nogil=True)
 def plane_trapezoids(
+    tables: NDArray[np.int64],
     page: NDArray[np.int64],
     grid: FloatArray,
     tiles: int,
@@ -693,7 +784,7 @@ def plane_trapezoids(
     pool: FloatArray,
     out: FloatArray,
 ) -> int:
-    """Material of a plane, given by its row of pages, as trapezoids with vertical sides.
+    """Material of a plane, given by its columns' tables, as trapezoids with vertical sides.
 
     Rows are (ua, ub, bottom a, bottom b, top a, top b).
 
@@ -703,15 +794,15 @@ def plane_trapezoids(
     cuts = np.empty(0)
     height = np.empty(0)
     order = np.empty(0, dtype=np.int64)
-    for column in range(len(page)):
+    for column in range(len(tables)):
         c0 = grid[0] + column * grid[2]
         c1 = grid[0] + (column + 1) * grid[2]
         tile = 0
         while tile < tiles:
-            cell = page[column, tile >> PAGE_BITS] + (tile & _IN_PAGE)
+            cell = page[tables[column], tile >> PAGE_BITS] + (tile & _IN_PAGE)
             floor = grid[1] + tile * grid[2]
             if state[cell] == FULL:
-                while tile < tiles and state[page[column, tile >> PAGE_BITS] + (tile & _IN_PAGE)] == FULL:
+                while tile < tiles and state[page[tables[column], tile >> PAGE_BITS] + (tile & _IN_PAGE)] == FULL:
                     tile += 1
                 if n >= len(out):
                     return -1

@@ -50,7 +50,8 @@ def cell_u_lines(
     lines: FloatArray,
     window: tuple[float, float],
     merge: float,
-    pages: NDArray[np.int64],
+    tables: NDArray[np.int64],
+    page: NDArray[np.int64],
     grid: FloatArray,
     tiles: int,
     state: NDArray[np.int8],
@@ -65,7 +66,8 @@ def cell_u_lines(
 
     Args:
         window: only cells between these v are looked at.
-        pages: shape (p, columns, blocks), the first cell of each page of each plane.
+        tables: shape (p, columns), the table of pages of each column of each plane.
+        page: see there.
         offsets: shape (p n + 1,), filled: all lines of the first plane, then those of the second, ...
         ends, slopes: filled.
 
@@ -77,14 +79,14 @@ def cell_u_lines(
     t1 = min(tiles, math.floor((window[1] - grid[1]) / h) + 1)
     n = 0
     offsets[0] = 0
-    for i in range(len(pages) * len(lines)):
+    for i in range(len(tables) * len(lines)):
         begin = n
-        page = pages[i // len(lines)]
+        plane = i // len(lines)
         u = lines[i % len(lines)]
         column = math.floor((u - grid[0]) / h)
-        if 0 <= column < len(page):
+        if 0 <= column < tables.shape[1]:
             for tile in range(t0, t1):
-                cell = page[column, tile >> _PAGE_BITS] + (tile & _IN_PAGE)
+                cell = page[tables[plane, column], tile >> _PAGE_BITS] + (tile & _IN_PAGE)
                 if state[cell] == _EMPTY:
                     continue
                 if n + 3 + size[cell] > len(ends):
@@ -114,7 +116,8 @@ def cell_v_lines(
     lines: FloatArray,
     window: tuple[float, float],
     merge: float,
-    pages: NDArray[np.int64],
+    tables: NDArray[np.int64],
+    page: NDArray[np.int64],
     grid: FloatArray,
     tiles: int,
     state: NDArray[np.int8],
@@ -132,17 +135,17 @@ def cell_v_lines(
     """
     h = grid[2]
     c0 = max(0, math.floor((window[0] - grid[0]) / h))
-    c1 = min(pages.shape[1], math.floor((window[1] - grid[0]) / h) + 1)
+    c1 = min(tables.shape[1], math.floor((window[1] - grid[0]) / h) + 1)
     n = 0
     offsets[0] = 0
-    for i in range(len(pages) * len(lines)):
+    for i in range(len(tables) * len(lines)):
         begin = n
-        page = pages[i // len(lines)]
+        plane = i // len(lines)
         v = lines[i % len(lines)]
         tile = math.floor((v - grid[1]) / h)
         if 0 <= tile < tiles:
             for column in range(c0, c1):
-                cell = page[column, tile >> _PAGE_BITS] + (tile & _IN_PAGE)
+                cell = page[tables[plane, column], tile >> _PAGE_BITS] + (tile & _IN_PAGE)
                 if state[cell] == _EMPTY:
                     continue
                 if n + 2 + 2 * size[cell] > len(ends):

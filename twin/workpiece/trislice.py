@@ -135,6 +135,11 @@ class CellSlices(TriSlices):
         """See `SliceStore.line_ends`."""
         return self._families[axis].line_ends(planes, fixed, at_mm, window_mm)
 
+    @property
+    def bytes_in_use(self) -> int:
+        """Memory that the slices take, without what is kept ready for more."""
+        return sum(family.bytes_in_use for family in self._families)
+
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
         """See `TriSlices.prepare`: planes are built when first needed; those that are not built hold nothing."""
         for axis, family in enumerate(self._families):
@@ -158,7 +163,7 @@ class CellSlices(TriSlices):
             self.pitch_mm[axis],
             family.grid,
             family.tiles,
-            family.row,
+            family.table,
             family.page,
             family.state,
             family.start,
