@@ -1,8 +1,8 @@
 """Put the figures of the benchmarks into performance.md, between its markers.
 
-    python -m benchmarks.speed --out docs/pictures > speed.json
-    python -m benchmarks.surface > surface.json
-    python docs/fill_performance.py speed.json surface.json
+python -m benchmarks.speed --out docs/pictures > speed.json
+python -m benchmarks.surface > surface.json
+python docs/fill_performance.py speed.json surface.json
 """
 
 from __future__ import annotations
@@ -40,19 +40,23 @@ def flat(speed: dict[str, Any]) -> str:
         f"| across a scalloped face over a fresh one, {depth} | {case['ratio']:.2f} |"
         for depth, case in speed["across"].items()
     ]
-    rows += [f"| memory, {name.rpartition(', ')[0]} | {value} {name.split(', ')[-1]} |" for name, value in memory.items()]
+    rows += [
+        f"| memory, {name.rpartition(', ')[0]} | {value} {name.split(', ')[-1]} |" for name, value in memory.items()
+    ]
     return "\n".join(rows)
 
 
 def surface(found: dict[str, Any]) -> str:
     """The surface program in one sentence."""
     return (
-        f"{found['motions']:,} motions are read in {found['reading_s']:.2f} s and removed in {found['removal_s']:.0f} s, "
+        f"{found['motions']:,} motions are read in {found['reading_s']:.2f} s and removed in "
+        f"{found['removal_s']:.0f} s, "
         f"{found['ms_per_motion']:.2f} ms a motion; peak memory of the process is {found['peak_memory_mib']:,} MiB."
     )
 
 
 def main() -> None:
+    """Read the figures, write the page."""
     speed, found = (json.loads(Path(name).read_text(encoding="utf-8")) for name in sys.argv[1:3])
     both = json.dumps([speed, found], indent=1)
     today = datetime.datetime.now(tz=datetime.UTC).date()

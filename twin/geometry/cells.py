@@ -52,10 +52,7 @@ class CellFamily:
         self._alike = Counter(map(id, regions))
         self._templates: dict[int, NDArray[np.int64]] = {}
         self._used: NDArray[np.int64] = np.array([0, 1])
-        self.state: NDArray[np.int8] = np.zeros(0, dtype=np.int8)
-        self.start: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
-        self.size: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
-        self.room: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+        self.cells: NDArray[np.int32] = np.zeros((0, 4), dtype=np.int32)
         self.pool = np.empty((1024, 5))
         self._free: NDArray[np.int64] = np.full(_FREE_LISTS + 1, -1, dtype=np.int64)
         self._free[-1] = 0
@@ -71,13 +68,13 @@ class CellFamily:
     def bytes_in_use(self) -> int:
         """Memory that cells, their edges and the tables of pages take, without what is kept ready for more."""
         cells, tables = self._used
-        per_cell = sum(a.itemsize for a in (self.state, self.start, self.size, self.room))
         per_table = self.page.shape[1] * (self.page.itemsize + self._own.itemsize)
+        edges, planes = self._free[-1], np.count_nonzero(self.table[:, 0])
         return int(
-            cells * per_cell
+            cells * self.cells[0].nbytes
+            + edges * self.pool[0].nbytes
             + tables * per_table
-            + self._free[-1] * self.pool[0].nbytes
-            + np.count_nonzero(self.table[:, 0]) * self.table[0].nbytes
+            + planes * self.table[0].nbytes
         )
 
     def built(self, k: int) -> bool:
@@ -115,7 +112,9 @@ class CellFamily:
                 self._own_table,
                 self._own,
                 self._used,
-                *(self.state, self.start, self.size, self.room, self.pool, self._free),
+                self.cells,
+                self.pool,
+                self._free,
                 self._toggles[0],
                 self._work,
                 self._out,
@@ -131,8 +130,7 @@ class CellFamily:
             pool[: len(self.pool)] = self.pool
             self.pool = pool
         elif answer == kernels.CELLS_FULL:
-            more = len(self.state) + kernels.PAGE_TILES * self.page.shape[1]
-            self._lengthen(more, "state", "start", "size", "room")
+            self._lengthen(len(self.cells) + kernels.PAGE_TILES * self.page.shape[1], "cells")
         elif answer == kernels.TABLES_FULL:
             self._lengthen(64 + len(self.page), "page", "_own_table", "_own")
         else:
@@ -163,7 +161,9 @@ class CellFamily:
                 self._own_table,
                 self._own,
                 self._used,
-                *(self.state, self.start, self.size, self.room, self.pool, self._free),
+                self.cells,
+                self.pool,
+                self._free,
                 self._segments,
                 self._toggles[0],
                 self._toggles[1],
@@ -196,7 +196,8 @@ class CellFamily:
                 self.page,
                 self.grid,
                 self.tiles,
-                *(self.state, self.start, self.size, self.pool),
+                self.cells,
+                self.pool,
                 offsets,
                 ends,
                 slopes,
@@ -215,9 +216,7 @@ class CellFamily:
                 self.page,
                 self.grid,
                 self.tiles,
-                self.state,
-                self.start,
-                self.size,
+                self.cells,
                 self.pool,
                 out,
             )

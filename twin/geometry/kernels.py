@@ -1,7 +1,8 @@
 """Column cells: polygons on parallel planes cut into small cells; compiled.
 
 A plane is divided into columns along u and tiles along v, all squares of one size. A cell is EMPTY, FULL, or PARTIAL
-with its own list of edges. An edge is a row (u0, v0, u1, v1, sign), u0 < u1, sign +1 where material lies below it and
+with its own list of edges: a row of ``cells`` holds its state, first edge, number of edges, and room for edges. An edge
+is a row (u0, v0, u1, v1, sign), u0 < u1, sign +1 where material lies below it and
 -1 where it lies above; vertical edges are implied. Where material goes on through the top of a cell a closing edge lies
 there, so that a point is in material when an odd number of the cell's edges lies above it (half-open in u).
 
@@ -13,7 +14,7 @@ Cells lie in pages of 8 tiles of one column, and each column has a table of its 
 is the index of the first cell of a page on plane k; ``table[k, column]`` is 0 while the plane is not built. Columns
 that begin alike, on one plane or on many, share their table until one is cut: then it gets its own (``own_table``),
 and each page that is cut becomes its own (``own``), with the same edges, which are never written where they belong to
-another cell (``room`` is 0). Pages without edges are shared between neighbouring columns, too.
+another cell (their room is 0). Pages without edges are shared between neighbouring columns, too.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ EMPTY, FULL, PARTIAL = 0, 1, 2
 #: What `cut_planes` and `fill_plane` return when they ran out of room, to be called again.
 DONE, POOL_FULL, SCRATCH_FULL, CELLS_FULL, TABLES_FULL = 0, 1, 2, 3, 4
 _SMALLEST_BLOCK = 4
+#: Columns of the array of cells: state, first edge, number of edges, room for edges.
+_STATE, _START, _SIZE, _ROOM = 0, 1, 2, 3
 #: Tiles in a page of cells: 2 ** 3.
 PAGE_BITS = 3
 PAGE_TILES = 1 << PAGE_BITS
@@ -58,14 +61,12 @@ def _block_class(count: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _release(
-    cell: int, start: NDArray[np.int64], room: NDArray[np.int64], pool: FloatArray, free: NDArray[np.int64]
-) -> None:
-    if room[cell] > 0:
-        exponent = _block_class(room[cell])
-        pool[start[cell], 0] = float(free[exponent])
-        free[exponent] = start[cell]
-        room[cell] = 0
+def _release(cell: int, cells: NDArray[np.int32], pool: FloatArray, free: NDArray[np.int64]) -> None:
+    if cells[cell, _ROOM] > 0:
+        exponent = _block_class(cells[cell, _ROOM])
+        pool[cells[cell, _START], 0] = float(free[exponent])
+        free[exponent] = cells[cell, _START]
+        cells[cell, _ROOM] = 0
 
 
 @njit(cache=True, nogil=True)
@@ -73,10 +74,7 @@ def _store(
     cell: int,
     edges: FloatArray,
     count: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    room: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     free: NDArray[np.int64],
 ) -> bool:
@@ -84,7 +82,7 @@ def _store(
 
     ``free[e]`` heads the list of released blocks of 4 * 2**e edges; its last entry is the pool's end so far.
     """
-    if count > room[cell]:
+    if count > cells[cell, _ROOM]:
         exponent = _block_class(count)
         block = _SMALLEST_BLOCK << exponent
         last = len(free) - 1
@@ -96,19 +94,19 @@ def _store(
             if place + block > len(pool):
                 return False
             free[last] = place + block
-        _release(cell, start, room, pool, free)
-        start[cell] = place
-        room[cell] = block
-    begin = start[cell]
+        _release(cell, cells, pool, free)
+        cells[cell, _START] = place
+        cells[cell, _ROOM] = block
+    begin = cells[cell, _START]
     for i in range(count):
         for c in range(5):
             pool[begin + i, c] = edges[i, c]
-    size[cell] = count
+    cells[cell, _SIZE] = count
     if count == 0:
-        _release(cell, start, room, pool, free)
-        state[cell] = EMPTY
+        _release(cell, cells, pool, free)
+        cells[cell, _STATE] = EMPTY
     else:
-        state[cell] = PARTIAL
+        cells[cell, _STATE] = PARTIAL
     return True
 
 
@@ -357,10 +355,7 @@ def _own_page(
     own_table: NDArray[np.bool_],
     own: NDArray[np.bool_],
     used: NDArray[np.int64],
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    room: NDArray[np.int64],
+    cells: NDArray[np.int32],
 ) -> int:
     """Give a column of a plane cells of its own for a page, if it has none yet; DONE, TABLES_FULL or CELLS_FULL."""
     if not own_table[table[plane, column]]:
@@ -375,13 +370,12 @@ def _own_page(
     if own[t, block]:
         return DONE
     old, new = page[t, block], used[0]
-    if new + PAGE_TILES > len(state):
+    if new + PAGE_TILES > len(cells):
         return CELLS_FULL
     for tile in range(PAGE_TILES):
-        state[new + tile] = state[old + tile]
-        start[new + tile] = start[old + tile]
-        size[new + tile] = size[old + tile]
-        room[new + tile] = 0
+        for column_of in range(_ROOM):
+            cells[new + tile, column_of] = cells[old + tile, column_of]
+        cells[new + tile, _ROOM] = 0
     used[0] += PAGE_TILES
     page[t, block] = new
     own[t, block] = True
@@ -401,10 +395,7 @@ def cut_planes(
     own_table: NDArray[np.bool_],
     own: NDArray[np.bool_],
     used: NDArray[np.int64],
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    room: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     free: NDArray[np.int64],
     segments: FloatArray,
@@ -478,26 +469,24 @@ def cut_planes(
                     cell = page[table[plane, column], block] + (tile & _IN_PAGE)
                     floor = v_low + tile * h
                     top = v_low + (tile + 1) * h
-                    if state[cell] == EMPTY:
+                    if cells[cell, _STATE] == EMPTY:
                         tile += 1
                         continue
                     if spans and lo_max <= floor and hi_min >= top:
-                        if state[cell] == FULL:
+                        if cells[cell, _STATE] == FULL:
                             area = (c1 - c0) * (top - floor)
                         else:
-                            area = _cell_area(pool, start[cell], size[cell], floor)
+                            area = _cell_area(pool, cells[cell, _START], cells[cell, _SIZE], floor)
                         if apply:
-                            answer = _own_page(
-                                plane, column, block, table, page, own_table, own, used, state, start, size, room
-                            )
+                            answer = _own_page(plane, column, block, table, page, own_table, own, used, cells)
                             if answer != DONE:
                                 cursor[1] = column
                                 cursor[2] = tile
                                 return answer
                             cell = page[table[plane, column], block] + (tile & _IN_PAGE)
-                            _release(cell, start, room, pool, free)
-                            size[cell] = 0
-                            state[cell] = EMPTY
+                            _release(cell, cells, pool, free)
+                            cells[cell, _SIZE] = 0
+                            cells[cell, _STATE] = EMPTY
                         removed[i] += area
                         tile += 1
                         continue
@@ -505,32 +494,29 @@ def cut_planes(
                     count = 0
                     before = 0.0
                     if pieces > 0:
-                        if state[cell] == FULL:
+                        if cells[cell, _STATE] == FULL:
                             last = len(out) - 1
                             out[last, 0], out[last, 1], out[last, 2], out[last, 3] = c0, top, c1, top
                             out[last, 4] = 1.0
                             before = (c1 - c0) * (top - floor)
                             count = _cut_edges(out, last, 1, segments, pieces, toggles_lo, toggles_hi, out[:last])
                         else:
-                            before = _cell_area(pool, start[cell], size[cell], floor)
-                            count = _cut_edges(
-                                pool, start[cell], size[cell], segments, pieces, toggles_lo, toggles_hi, out
-                            )
+                            begin, old = cells[cell, _START], cells[cell, _SIZE]
+                            before = _cell_area(pool, begin, old, floor)
+                            count = _cut_edges(pool, begin, old, segments, pieces, toggles_lo, toggles_hi, out)
                     if pieces < 0 or count < 0:
                         cursor[1] = column
                         cursor[2] = tile
                         return SCRATCH_FULL
                     if pieces > 0:
                         if apply:
-                            answer = _own_page(
-                                plane, column, block, table, page, own_table, own, used, state, start, size, room
-                            )
+                            answer = _own_page(plane, column, block, table, page, own_table, own, used, cells)
                             if answer != DONE:
                                 cursor[1] = column
                                 cursor[2] = tile
                                 return answer
                         cell = page[table[plane, column], block] + (tile & _IN_PAGE)
-                        if apply and not _store(cell, out, count, state, start, size, room, pool, free):
+                        if apply and not _store(cell, out, count, cells, pool, free):
                             cursor[1] = column
                             cursor[2] = tile
                             return POOL_FULL
@@ -554,10 +540,7 @@ def fill_plane(
     own_table: NDArray[np.bool_],
     own: NDArray[np.bool_],
     used: NDArray[np.int64],
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    room: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     free: NDArray[np.int64],
     toggles: FloatArray,
@@ -585,8 +568,8 @@ def fill_plane(
         column = cursor[0]
         if used[1] >= len(page):
             return TABLES_FULL
-        cells = used[0]
-        if cells + blocks * PAGE_TILES > len(state):
+        first = used[0]
+        if first + blocks * PAGE_TILES > len(cells):
             return CELLS_FULL
         c0 = u_low + column * h
         c1 = u_low + (column + 1) * h
@@ -609,8 +592,8 @@ def fill_plane(
             for e in range(n):
                 lowest = min(lowest, work[e, 1], work[e, 3])
             if repeats and lowest > top:
-                state[cells + tile] = state[cells + tile - 1]
-                size[cells + tile] = 0
+                cells[first + tile, _STATE] = cells[first + tile - 1, _STATE]
+                cells[first + tile, _SIZE] = 0
                 continue
             count = 0
             rest = 0
@@ -644,30 +627,30 @@ def fill_plane(
             # with all edges above, the next tile is like this one if this one is all material or none
             repeats = rest == n
             n = rest
-            cell = cells + tile
+            cell = first + tile
             closed = _spans_top(out, count, c0, c1, top)
             repeats = repeats and (closed or count == 0)
             if closed:
-                state[cell] = FULL
-                size[cell] = 0
-            elif not _store(cell, out, count, state, start, size, room, pool, free):
+                cells[cell, _STATE] = FULL
+                cells[cell, _SIZE] = 0
+            elif not _store(cell, out, count, cells, pool, free):
                 return POOL_FULL
         t, before = used[1], page[tables[max(0, column - 1)]]
         new = column == 0
         without_edges = True
         for block in range(blocks):
-            at, most = cells + block * PAGE_TILES, min(PAGE_TILES, tiles - block * PAGE_TILES)
-            plain = PARTIAL not in state[at : at + most]
+            at, most = first + block * PAGE_TILES, min(PAGE_TILES, tiles - block * PAGE_TILES)
+            plain = PARTIAL not in cells[at : at + most, _STATE]
             own[t, block] = alone and not plain
             without_edges = without_edges and plain
             if (
                 plain
                 and column > 0
-                and np.array_equal(state[at : at + most], state[before[block] : before[block] + most])
+                and np.array_equal(cells[at : at + most, _STATE], cells[before[block] : before[block] + most, _STATE])
             ):
                 page[t, block] = before[block]
             else:
-                page[t, block] = _move_page(at, used, state, start, size, room)
+                page[t, block] = _move_page(at, used, cells)
                 new = True
         tables[column] = t if new else tables[column - 1]
         own_table[tables[column]] = alone and new
@@ -687,22 +670,13 @@ def _go_on(edges: FloatArray, begin: float, end: float) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _move_page(
-    cells: int,
-    used: NDArray[np.int64],
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    room: NDArray[np.int64],
-) -> int:
+def _move_page(at: int, used: NDArray[np.int64], cells: NDArray[np.int32]) -> int:
     """Move a page down to the first cells that are not in use; returns where it is then."""
     to = used[0]
-    for tile in range(PAGE_TILES if to < cells else 0):
-        state[to + tile] = state[cells + tile]
-        start[to + tile] = start[cells + tile]
-        size[to + tile] = size[cells + tile]
-        room[to + tile] = room[cells + tile]
-        room[cells + tile] = 0
+    for tile in range(PAGE_TILES if to < at else 0):
+        for column in range(_ROOM + 1):
+            cells[to + tile, column] = cells[at + tile, column]
+        cells[at + tile, _ROOM] = 0
     used[0] = to + PAGE_TILES
     return to
 
@@ -741,9 +715,7 @@ def contains(
     tiles: int,
     table: NDArray[np.int64],
     page: NDArray[np.int64],
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     votes: NDArray[np.int8],
     needed_low: int,
@@ -767,8 +739,8 @@ def contains(
         if table[k, column] == 0:
             continue
         cell = page[table[k, column], tile >> PAGE_BITS] + (tile & _IN_PAGE)
-        kind = state[cell]
-        if kind == FULL or (kind == PARTIAL and _odd_above(u, v, start[cell], start[cell] + size[cell], pool)):
+        kind, begin, end = cells[cell, _STATE], cells[cell, _START], cells[cell, _START] + cells[cell, _SIZE]
+        if kind == FULL or (kind == PARTIAL and _odd_above(u, v, begin, end, pool)):
             votes[i] += 1
 
 
@@ -778,9 +750,7 @@ def plane_trapezoids(
     page: NDArray[np.int64],
     grid: FloatArray,
     tiles: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     out: FloatArray,
 ) -> int:
@@ -801,8 +771,10 @@ def plane_trapezoids(
         while tile < tiles:
             cell = page[tables[column], tile >> PAGE_BITS] + (tile & _IN_PAGE)
             floor = grid[1] + tile * grid[2]
-            if state[cell] == FULL:
-                while tile < tiles and state[page[tables[column], tile >> PAGE_BITS] + (tile & _IN_PAGE)] == FULL:
+            if cells[cell, _STATE] == FULL:
+                while (
+                    tile < tiles and cells[page[tables[column], tile >> PAGE_BITS] + (tile & _IN_PAGE), _STATE] == FULL
+                ):
                     tile += 1
                 if n >= len(out):
                     return -1
@@ -810,8 +782,8 @@ def plane_trapezoids(
                 out[n, 0], out[n, 1], out[n, 2], out[n, 3], out[n, 4], out[n, 5] = c0, c1, floor, floor, top, top
                 n += 1
                 continue
-            if state[cell] == PARTIAL:
-                begin, count = start[cell], size[cell]
+            if cells[cell, _STATE] == PARTIAL:
+                begin, count = cells[cell, _START], cells[cell, _SIZE]
                 if len(cuts) < 2 * count:
                     cuts = np.empty(4 * count)
                     height = np.empty(2 * count)

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 
 _EMPTY, _FULL = 0, 1
+#: Columns of the array of cells, as there.
+_STATE, _START, _SIZE = 0, 1, 2
 #: Tiles in a page of cells, as there.
 _PAGE_BITS, _IN_PAGE = 3, 7
 
@@ -54,9 +56,7 @@ def cell_u_lines(
     page: NDArray[np.int64],
     grid: FloatArray,
     tiles: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     offsets: NDArray[np.int64],
     ends: FloatArray,
@@ -87,17 +87,17 @@ def cell_u_lines(
         if 0 <= column < tables.shape[1]:
             for tile in range(t0, t1):
                 cell = page[tables[plane, column], tile >> _PAGE_BITS] + (tile & _IN_PAGE)
-                if state[cell] == _EMPTY:
+                if cells[cell, _STATE] == _EMPTY:
                     continue
-                if n + 3 + size[cell] > len(ends):
+                if n + 3 + cells[cell, _SIZE] > len(ends):
                     return -1
                 floor = grid[1] + tile * h
                 m = n
-                if state[cell] == _FULL:
+                if cells[cell, _STATE] == _FULL:
                     ends[m], slopes[m] = grid[1] + (tile + 1) * h, 0.0
                     m += 1
                 else:
-                    for e in range(start[cell], start[cell] + size[cell]):
+                    for e in range(cells[cell, _START], cells[cell, _START] + cells[cell, _SIZE]):
                         if pool[e, 0] <= u < pool[e, 2]:
                             slope = (pool[e, 3] - pool[e, 1]) / (pool[e, 2] - pool[e, 0])
                             ends[m], slopes[m] = pool[e, 1] + slope * (u - pool[e, 0]), slope
@@ -120,9 +120,7 @@ def cell_v_lines(
     page: NDArray[np.int64],
     grid: FloatArray,
     tiles: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     offsets: NDArray[np.int64],
     ends: FloatArray,
@@ -146,17 +144,17 @@ def cell_v_lines(
         if 0 <= tile < tiles:
             for column in range(c0, c1):
                 cell = page[tables[plane, column], tile >> _PAGE_BITS] + (tile & _IN_PAGE)
-                if state[cell] == _EMPTY:
+                if cells[cell, _STATE] == _EMPTY:
                     continue
-                if n + 2 + 2 * size[cell] > len(ends):
+                if n + 2 + 2 * cells[cell, _SIZE] > len(ends):
                     return -1
                 m = n
-                if state[cell] == _FULL:
+                if cells[cell, _STATE] == _FULL:
                     ends[m], slopes[m] = grid[0] + column * h, 0.0
                     ends[m + 1], slopes[m + 1] = grid[0] + (column + 1) * h, 0.0
                     m += 2
                 else:
-                    for e in range(start[cell], start[cell] + size[cell]):
+                    for e in range(cells[cell, _START], cells[cell, _START] + cells[cell, _SIZE]):
                         u0, v0, u1, v1 = pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3]
                         if v0 <= v and v1 <= v:
                             continue
