@@ -20,6 +20,9 @@ from twin.geometry.strips import Strips
 from twin.workpiece.stock import SliceSet
 from twin.workpiece.store import PLANE_AXES
 
+#: Areas that are taken for rounding: as a number, and as a share of the stock's plan.
+LEAST_MM2, LEAST_SHARE = 1e-6, 1e-9
+
 
 class TriSlices(ABC):
     """What both stores share: the planes, areas and volumes."""
@@ -45,6 +48,16 @@ class TriSlices(ABC):
     def count(self, axis: int) -> int:
         """Number of planes of a family."""
         return len(self.slices.regions[axis])
+
+    def levels(self) -> int:
+        """How many z planes there are up to the highest one with material: above it there is nothing to cut.
+
+        Less than a millionth of a square millimetre, or a billionth of the stock's box, is rounding and no material.
+        """
+        extent = self.high_mm - self.low_mm
+        least = min(LEAST_MM2, LEAST_SHARE * extent[0] * extent[1])
+        held = np.flatnonzero(self.areas_mm2(2) > least)
+        return int(held[-1]) + 1 if len(held) else 0
 
     @abstractmethod
     def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
