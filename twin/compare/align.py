@@ -13,17 +13,23 @@ from scipy.optimize import minimize_scalar
 from twin.arrays import FloatArray
 from twin.compare.run_forces import RunForces
 from twin.errors import CompareError
-from twin.measured.log import AXES, ForceLog
+from twin.measured.log import AXES, ForceLog, Gap
 from twin.measured.uniform import outside_gaps
 
 #: An overlap shorter than this part of the shorter record counts as none.
 _LEAST_OVERLAP = 0.3
 #: Peaks that reach the best one to this part are as good.
-_AS_GOOD = 0.995
+_AS_GOOD = 0.99
+#: ... and as long an overlap, square root, to this part.
+_AS_LONG = 0.9
+#: So many peaks are refined before the best is taken ...
+_REFINED = 3
+#: ... and then neighbours a tooth period away are tried, at most so many on a side.
+_CLIMBED = 40
 #: Most samples that are correlated over all delays; longer records are thinned out first.
 _MOST_SAMPLES = 1 << 22
 #: The simulation is sampled so many times finer before it is band-limited to the log's rate.
-_FINER = 8
+_FINER = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,8 +58,9 @@ def find_delay(run: RunForces, log: ForceLog, within_s: float | None = None) -> 
     """The delay at which log and run correlate best.
 
     For every delay the correlation coefficient over the overlap is taken, all measured axes together, each less its
-    mean there; it is weighted by the square root of the overlap, so that a short chance likeness does not win. The
-    best delay is refined by the maximum of the band-limited correlation.
+    mean there. Weighted by the square root of the overlap, so that a short chance likeness does not win, it tells
+    about where to look; among the peaks that are about as good there and overlap about as long, the best few are
+    refined by the maximum of the band-limited correlation, and the highest coefficient wins.
 
     Args:
         log: evenly sampled.
@@ -64,17 +71,21 @@ def find_delay(run: RunForces, log: ForceLog, within_s: float | None = None) -> 
     """
     axes = [AXES.index(a) for a in log.axes]
     grid = _Grid.of(run, log)
-    scores, lags = grid.scores(axes)
+    scores, weights, lags = grid.scores(axes)
     if within_s is not None:
         near = np.abs(lags) <= within_s + 0.5 / grid.rate_hz
-        scores, lags = scores[near], lags[near]
-    if not len(scores) or not np.isfinite(scores).any() or scores.max() <= 0.0:
+        scores, weights, lags = scores[near], weights[near], lags[near]
+    if not len(scores) or (scores * weights).max() <= 0.0:
         reach = f" within {within_s:g} s" if within_s is not None else ""
         raise CompareError(f"{log.source}: no delay{reach} at which the log follows the run; give it by --lag SECONDS")
-    best = int(np.argmax(scores))
-    lag = float(lags[best])
-    fine = _refined(run, log, axes, lag, 1.0 / grid.rate_hz)
-    return Delay(lag_s=fine, score=_pearson(run, log, axes, fine), rivals_s=_rivals(scores, lags, best))
+    peaks = _peaks(scores, weights)
+    likely = sorted(peaks, key=lambda p: _top(scores, p), reverse=True)[:_REFINED]
+    fine = [_refined(run, log, axes, float(lags[p]), 1.0 / grid.rate_hz) for p in likely]
+    shared = _shared(run, log, fine)
+    found = [_pearson(run, log, axes, lag, shared) for lag in fine]
+    lag = _climbed(run, log, axes, fine[int(np.argmax(found))], within_s)
+    rivals = sorted((float(lags[p]) for p in peaks), key=lambda rival: abs(rival - lag))[1:]
+    return Delay(lag_s=lag, score=_pearson(run, log, axes, lag), rivals_s=tuple(rivals))
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,8 +107,8 @@ class _Grid:
         count = int((end - begin) * rate) + 1
         return cls(rate, begin, float(log.t_s[0]), simulated_at_rate(run, begin, count, rate), np.asarray(measured))
 
-    def scores(self, axes: Sequence[int]) -> tuple[FloatArray, FloatArray]:
-        """Weighted correlation at every delay, and the delays in s."""
+    def scores(self, axes: Sequence[int]) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Correlation at every delay, its weight, and the delays in s."""
         totals = [self._sums(i, i) for i in axes]
         both = sum((t[0] for t in totals), np.zeros(1))
         power = np.sqrt(sum((t[1] for t in totals), np.zeros(1)) * sum((t[2] for t in totals), np.zeros(1)))
@@ -107,23 +118,30 @@ class _Grid:
         shorter = min(len(self.run_n), len(self.log_n))
         weight = np.where(count >= _LEAST_OVERLAP * shorter, np.sqrt(count / shorter), 0.0)
         shifts = np.arange(-(len(self.run_n) - 1), len(self.log_n))
-        return coefficient * weight, self.log_begin_s - self.run_begin_s + shifts / self.rate_hz
+        coefficient = np.where(weight > 0.0, coefficient, 0.0)
+        return coefficient, weight, self.log_begin_s - self.run_begin_s + shifts / self.rate_hz
 
     def _sums(self, log_axis: int, run_axis: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Covariance and variances over the overlap, times its length, and the length, at every shift."""
-        m, s = self.log_n[:, log_axis], self.run_n[:, run_axis]
-        ones_m, ones_s = np.ones(len(m)), np.ones(len(s))
-        count = np.maximum(np.rint(_correlate(ones_m, ones_s)), 1.0)
-        sum_m, sum_s = _correlate(m, ones_s), _correlate(ones_m, s)
-        both = _correlate(m, s) - sum_m * sum_s / count
-        var_m = _correlate(m * m, ones_s) - sum_m**2 / count
-        var_s = _correlate(ones_m, s * s) - sum_s**2 / count
+        m = self.log_n[:, log_axis] - self.log_n[:, log_axis].mean()
+        s = self.run_n[:, run_axis] - self.run_n[:, run_axis].mean()
+        shifts = np.arange(-(len(s) - 1), len(m))
+        in_m = np.maximum(shifts, 0), np.minimum(shifts + len(s), len(m))
+        in_s = np.maximum(-shifts, 0), np.minimum(len(m) - shifts, len(s))
+        count = (in_m[1] - in_m[0]).astype(float)
+        sum_m, sum_s = _total(m, *in_m), _total(s, *in_s)
+        both = np.asarray(signal.correlate(m, s, mode="full", method="fft")) - sum_m * sum_s / count
+        var_m = _total(m * m, *in_m) - sum_m**2 / count
+        var_s = _total(s * s, *in_s) - sum_s**2 / count
         return both, np.maximum(var_m, 0.0), np.maximum(var_s, 0.0), count
 
 
-def _correlate(m: FloatArray, s: FloatArray) -> FloatArray:
-    """Sum of m[k + shift] s[k] at every shift from -(len(s) - 1) to len(m) - 1."""
-    return np.asarray(signal.correlate(m, s, mode="full", method="fft"))
+def _total(
+    values: FloatArray, begin: np.ndarray[tuple[int], np.dtype[np.int_]], end: np.ndarray[tuple[int], np.dtype[np.int_]]
+) -> FloatArray:
+    """Sums of values from begin to end, for many of them."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    return np.asarray(sums[end] - sums[begin])
 
 
 def _refined(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, reach_s: float) -> float:
@@ -156,22 +174,58 @@ def _refined(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, r
     return lag_s + float(found.x)
 
 
-def _pearson(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float) -> float:
-    """Correlation over the overlap at one delay, all axes together."""
+def _climbed(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, within_s: float | None) -> float:
+    """The best delay among those whole tooth periods away: neighbours differ little, and by less than the grid shows."""
+    turning = run.speed_in(run.span_s)
+    if turning is None or not turning[0]:
+        return lag_s
+    period = 60.0 / abs(turning[0]) / turning[1]
+    part = _shared(run, log, (lag_s - _CLIMBED * period, lag_s + _CLIMBED * period))
+    best, height = lag_s, _pearson(run, log, axes, lag_s, part)
+    for way in (period, -period):
+        for _ in range(_CLIMBED):
+            higher = _pearson(run, log, axes, best + way, part)
+            if higher <= height or (within_s is not None and abs(best + way) > within_s):
+                break
+            best, height = best + way, higher
+    return best if best == lag_s else _refined(run, log, axes, best, 1.0 / log.rate_hz)
+
+
+def _shared(run: RunForces, log: ForceLog, lags: Sequence[float]) -> Gap:
+    """The stretch of the log that overlaps with the run at all of some delays; all of it where they lie far apart."""
+    begin, end = run.span_s
+    first, last = max(lags) + begin, min(lags) + end
+    overlap = min(last, float(log.t_s[-1])) - max(first, float(log.t_s[0]))
+    return (first, last) if overlap > 0.5 * min(end - begin, log.duration_s) * _LEAST_OVERLAP else log.span_s
+
+
+def _pearson(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, part: Gap | None = None) -> float:
+    """Correlation over the overlap at one delay, all axes together; ``part`` of the log only, where it is given."""
     t_s = log.t_s - lag_s
     begin, end = run.span_s
     inside = (t_s >= begin) & (t_s <= end) & outside_gaps(log, log.t_s)
+    if part is not None:
+        inside &= (log.t_s >= part[0]) & (log.t_s <= part[1])
     m, s = log.force_n[inside][:, axes], run.at(t_s[inside])[:, axes]
     m, s = m - m.mean(axis=0), s - s.mean(axis=0)
     power = float(np.sqrt(np.sum(m * m) * np.sum(s * s)))
     return float(np.sum(m * s)) / power if power > 0.0 else 0.0
 
 
-def _rivals(scores: FloatArray, lags: FloatArray, best: int) -> tuple[float, ...]:
-    """Other peaks that are as good, nearest first."""
-    peaks, _ = signal.find_peaks(scores, height=_AS_GOOD * scores[best])
-    others = [float(lags[p]) for p in peaks if abs(int(p) - best) > 2]
-    return tuple(sorted(others, key=lambda lag: abs(lag - float(lags[best]))))
+def _peaks(scores: FloatArray, weights: FloatArray) -> list[int]:
+    """The best place, weighted, and all peaks that are about as good or better and overlap about as long."""
+    best = int(np.argmax(scores * weights))
+    peaks = signal.find_peaks(scores, height=_AS_GOOD * scores[best])[0].tolist()
+    return list(dict.fromkeys([best, *(p for p in peaks if weights[p] >= _AS_LONG * weights[best])]))
+
+
+def _top(scores: FloatArray, at: int) -> float:
+    """Height of a peak by the parabola through its three highest samples: a delay may lie between two samples."""
+    if not 0 < at < len(scores) - 1:
+        return float(scores[at])
+    left, middle, right = (float(s) for s in scores[at - 1 : at + 2])
+    bend = left - 2.0 * middle + right
+    return middle - (left - right) ** 2 / (8.0 * bend) if bend < 0.0 else middle
 
 
 def better_axes(run: RunForces, log: ForceLog) -> tuple[dict[str, str], float]:

@@ -18,6 +18,8 @@ _UNIT_FACTORS = (150.0, 7000.0)
 _SPEED_WITHIN = 0.01
 _POOR_FIT = 0.7
 _FAR_BETTER = 0.15
+#: Delays that fit as well are worth a word when they lie this part of the log apart.
+_FAR_RIVALS = 0.25
 
 
 def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Iterator[str]:
@@ -126,11 +128,11 @@ def _turned(text: str) -> str:
     return swapped.removeprefix("+") if text.startswith("-") else f"-{swapped}"
 
 
-def check_delay(delay: Delay, period_s: float) -> Iterator[str]:
-    """A delay that could as well be another one."""
-    far = [r for r in delay.rivals_s if abs(r - delay.lag_s) > 0.25 * period_s]
-    if far:
+def check_delay(delay: Delay, log: ForceLog) -> Iterator[str]:
+    """A delay that could as well be another one far from it: neighbours a tooth period away are no matter."""
+    far = max((abs(r - delay.lag_s) for r in delay.rivals_s), default=0.0)
+    if far > _FAR_RIVALS * log.duration_s:
         yield (
-            f"{len(far)} other delays fit as well, the nearest {1e3 * abs(far[0] - delay.lag_s):.3f} ms away: the cut "
-            "is steady, so that only the spindle's phase is known; --lag-within SECONDS narrows the search"
+            f"{log.source}: {len(delay.rivals_s)} other delays fit as well, up to {far:.3f} s away: the cut is steady "
+            "there, so that only the spindle's phase is known; --lag-within SECONDS narrows the search"
         )

@@ -133,8 +133,8 @@ def compare(run: RunForces, log: ForceLog, settings: CompareSettings) -> Compari
     overlap = checks.check_overlap(run, log, lag_s)
     both = _Both.of(run, log, lag_s, settings)
     score = _score(both, log)
-    if delay is not None and rpm:
-        warnings += checks.check_delay(delay, 60.0 / abs(rpm) / teeth)
+    if delay is not None:
+        warnings += checks.check_delay(delay, log)
     warnings += checks.check_fit(run, log, score, settings)
     windows = tuple(_windows(run, log, both, overlap, settings))
     return Comparison(
