@@ -175,7 +175,7 @@ def _refined(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, r
 
 
 def _climbed(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, within_s: float | None) -> float:
-    """The best delay among those whole tooth periods away: neighbours differ little, and by less than the grid shows."""
+    """The best delay among those whole tooth periods away: neighbours differ by less than the grid shows."""
     turning = run.speed_in(run.span_s)
     if turning is None or not turning[0]:
         return lag_s
