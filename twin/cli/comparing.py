@@ -17,6 +17,7 @@ from twin.compare.comparison import Comparison, compare_files
 from twin.errors import ArchiveError, CompareError
 from twin.measured.axes import AxisMap
 from twin.measured.filters import Filter
+from twin.measured.spans import parse_offset, parse_window
 
 _TABLE = "measured."
 
@@ -150,11 +151,11 @@ def settings_of(asked: Asked, job: Mapping[str, str]) -> ask.CompareSettings:
     if asked.lowpass_hz is not None:
         filters.append(Filter(kind="lowpass", hz=asked.lowpass_hz, phase=phase))
     return ask.CompareSettings(
-        windows=tuple(ask.parse_window(w) for w in asked.windows or _list(job.get("windows"))),
-        lag=ask.parse_lag(asked.lag or job.get("lag") or "auto"),
+        windows=tuple(parse_window(w) for w in asked.windows or _list(job.get("windows"))),
+        lag=ask.parse_lag(asked.lag or job.get("lag_s") or "auto"),
         lag_within_s=asked.lag_within_s,
         phase=asked.phase,
-        offset=ask.parse_offset(asked.offset or job.get("offset") or "none"),
+        offset=parse_offset(asked.offset or job.get("offset") or "none"),
         drift=asked.drift,
         resample_hz=asked.resample_hz,
         filters=tuple(filters),

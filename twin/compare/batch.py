@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from twin.compare.comparison import Comparison, compare_files
-from twin.compare.settings import CompareSettings, parse_lag, parse_offset, parse_window
+from twin.compare.settings import CompareSettings, parse_lag
 from twin.errors import CompareError, TwinError
 from twin.measured.axes import AxisMap
 from twin.measured.filters import Filter
+from twin.measured.spans import parse_offset, parse_window
 
 #: Columns of a table, and what each does to the settings of its row.
 _KEYS: dict[str, Callable[[CompareSettings, str], CompareSettings]] = {

@@ -37,7 +37,7 @@ def whole_record(found: Comparison) -> bytes:
         _curve(part, found.t_s, found.simulated_n[:, i], _COLORS[axis], "simulated", 0.75)
         for window in found.windows:
             if not window.whole:
-                part.axvspan(*window.span_s, color="#f2c230", alpha=0.6, lw=0)
+                part.axvspan(*window.span_s, color="#f2b800", alpha=0.8, lw=1.2)
         _dress(part, f"F{axis}, N")
     parts[-1].set_xlabel("run time, s")
     return _png(figure)
@@ -99,7 +99,8 @@ def error_histogram(found: Comparison) -> bytes:
         i = AXES.index(axis)
         errors = [w.simulated_n[:, i] - w.measured_n[:, i] for w in found.windows]
         reach = float(np.percentile(np.abs(np.concatenate(errors)), 99.8)) or 1.0
-        edges = np.linspace(-reach, reach, 42)
+        fewest = min(len(e) for e in errors)
+        edges = np.linspace(-reach, reach, 2 * int(np.clip(0.9 * np.sqrt(fewest), 4, 25)) + 1)
         for k, (window, error) in enumerate(zip(found.windows, errors, strict=True)):
             counts = np.histogram(error, edges)[0] / len(error)
             name = f"{window.span_s[0]:g}–{window.span_s[1]:g} s"
@@ -214,7 +215,16 @@ def _dress(part: Axes, label: str, legend: bool = True) -> None:
     part.tick_params(labelsize=8)
     part.margins(x=0.0)
     if legend:
-        part.legend(loc="upper right", fontsize=7.5, ncols=3, frameon=True, framealpha=0.85, edgecolor="none")
+        part.legend(
+            loc="lower right",
+            bbox_to_anchor=(1.0, 0.985),
+            borderaxespad=0.0,
+            fontsize=7.5,
+            ncols=4,
+            frameon=False,
+            handlelength=1.6,
+            columnspacing=1.2,
+        )
 
 
 def _png(figure: Figure) -> bytes:

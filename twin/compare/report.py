@@ -152,4 +152,4 @@ def _ratio(value: float | None, decimals: int = 2) -> str:
 
 
 def _degrees(value: float | None) -> str:
-    return "" if value is None else f"{math.degrees(value):+.0f}°"
+    return "" if value is None else f"{round(math.degrees(value)) + 0:+d}°".replace("+0°", "0°")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
@@ -10,15 +9,11 @@ from twin.errors import CompareError
 from twin.measured.axes import AxisMap
 from twin.measured.filters import Filter
 from twin.measured.log import Gap
+from twin.measured.spans import Offset
 from twin.record import ForceOn
 
 #: ``auto``: found by cross-correlation.
 Lag: TypeAlias = float | Literal["auto"]
-#: ``none``; ``air``: mean while the run cuts nothing; windows on the log's clock; or the numbers.
-Offset: TypeAlias = Literal["none", "air"] | Gap | tuple[float, float, float]
-
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_WINDOW = re.compile(rf"^\s*({_NUMBER})\s*(?::|\.\.|–)\s*({_NUMBER})\s*s?\s*$")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,21 +64,6 @@ class CompareSettings:
     read: ReadSettings = field(default_factory=ReadSettings)
 
 
-def parse_window(text: str) -> Gap:
-    """``4.00:4.02`` as begin and end.
-
-    Raises:
-        CompareError: no two numbers, or an end that is not behind the begin.
-    """
-    found = _WINDOW.match(text)
-    if found is None:
-        raise CompareError(f"window {text!r}: expected BEGIN:END in seconds, e.g. 4.00:4.02")
-    begin, end = float(found[1]), float(found[2])
-    if not begin < end:
-        raise CompareError(f"window {text!r}: ends at {end:g} s, expected an end behind its begin, {begin:g} s")
-    return begin, end
-
-
 def parse_lag(text: str) -> Lag:
     """``auto`` or seconds.
 
@@ -96,27 +76,6 @@ def parse_lag(text: str) -> Lag:
         return float(text.strip().removesuffix("s"))
     except ValueError:
         raise CompareError(f"lag {text!r}: expected auto or seconds, e.g. 0.0123") from None
-
-
-def parse_offset(text: str) -> Offset:
-    """``none``, ``air``, ``BEGIN:END`` on the log's clock, or ``X,Y,Z`` in N.
-
-    Raises:
-        CompareError: none of them.
-    """
-    bare = text.strip().lower()
-    if bare in ("none", "air"):
-        return "none" if bare == "none" else "air"
-    if _WINDOW.match(bare):
-        return parse_window(bare)
-    parts = bare.split(",")
-    try:
-        x, y, z = (float(p) for p in parts)
-    except ValueError:
-        raise CompareError(
-            f"offset {text!r}: expected air, none, BEGIN:END in seconds of the log, or X,Y,Z in N"
-        ) from None
-    return x, y, z
 
 
 def parse_notch(text: str, phase: Literal["zero", "causal"] = "zero") -> Filter:
