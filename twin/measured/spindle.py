@@ -19,6 +19,7 @@ _SEARCHED = (0.65, 1.5)
 _LEAST_SHARE = 0.25
 #: Longest stretch that is looked at, samples.
 _MOST_SAMPLES = 1 << 20
+_FINE_SAMPLES = 1 << 17
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,17 +68,30 @@ def _from_spectrum(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpe
     found = np.arange(low, high, 0.5 * step)
     scores = _comb(power, step, found, log.rate_hz)
     best = float(found[np.argmax(scores)])
-    span = 2.0 * step
-    fine = minimize_scalar(
-        lambda f: -float(_comb(power, step, np.array([f]), log.rate_hz)[0]),
-        bounds=(best - span, best + span),
-        method="bounded",
-    )
-    hz = float(fine.x)
+    hz = _refined(moving[:_FINE_SAMPLES], log.rate_hz, best, step)
     share = _share(power, step, hz, log.rate_hz, n)
     if share < _LEAST_SHARE:
         return None
     return SpindleSpeed(rpm=60.0 * hz / teeth, share=share, way="spectrum")
+
+
+def _refined(moving: FloatArray, rate_hz: float, hz: float, reach_hz: float) -> float:
+    """The frequency next to one on the grid at which the comb's power, without any grid, is highest."""
+    orders = np.arange(1, _lines(hz, rate_hz) + 1)
+    t_s = np.arange(len(moving)) / rate_hz
+
+    def loss(at_hz: float) -> float:
+        base = np.exp(-2.0j * np.pi * at_hz * t_s)
+        turn, total = np.ones_like(base), 0.0
+        for _ in orders:
+            turn = turn * base
+            total += float(np.sum(np.abs(turn @ moving) ** 2))
+        return -total
+
+    found = minimize_scalar(
+        loss, bounds=(hz - reach_hz, hz + reach_hz), method="bounded", options={"xatol": 1e-4 * reach_hz}
+    )
+    return float(found.x)
 
 
 def _lines(hz: float, rate_hz: float) -> int:

@@ -16,7 +16,7 @@ from twin.measured.log import Correction, ForceLog, vector
 #: Times may stand off an even grid by so much of an interval before the samples are interpolated to it.
 _EVEN = 0.02
 #: Largest numerator and denominator of a ratio of rates.
-_MOST_RATIO = 2000
+_MOST_RATIO = 20000
 _PLAIN_RATIO = 64
 #: Samples of an even grid that may stand for each measured one.
 _MOST_FILL = 20
@@ -30,7 +30,7 @@ def uniform(log: ForceLog) -> ForceLog:
     steps = np.diff(log.t_s) * log.rate_hz
     if np.abs(np.cumsum(steps - 1.0)).max(initial=0.0) < _EVEN:
         return log
-    count = round(log.duration_s * log.rate_hz) + 1
+    count = int(log.duration_s * log.rate_hz + _EVEN) + 1
     if count > _MOST_FILL * len(log.t_s):
         raise MeasuredError(
             f"{log.source}: {len(log.t_s)} samples over {log.duration_s:g} s, expected about {count} at "
@@ -45,7 +45,7 @@ def resample(log: ForceLog, rate_hz: float) -> ForceLog:
     """The log at another rate, band-limited by a symmetric filter: no aliasing, no delay.
 
     Args:
-        rate_hz: wanted rate; the nearest ratio of whole numbers up to 2000 is taken.
+        rate_hz: wanted rate; the nearest ratio of whole numbers up to 20000 is taken.
 
     Raises:
         MeasuredError: a rate that is not above 0, or leaves no samples.

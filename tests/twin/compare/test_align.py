@@ -54,7 +54,7 @@ def test_a_steady_part_has_rivals() -> None:
 
 
 def test_no_overlap_within_reach() -> None:
-    with pytest.raises(CompareError, match="no delay within 0.5 s at which the log follows the run; give it by --lag"):
+    with pytest.raises(CompareError, match=r"no delay within 0.5 s at which the log follows the run; give it by --lag"):
         find_delay(RUN, log_of(RUN, lag_s=100.0, span_s=(100.0, 107.6)), within_s=0.5)
 
 

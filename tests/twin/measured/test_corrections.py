@@ -109,7 +109,7 @@ def test_uneven_samples_are_put_on_a_grid() -> None:
     t_s = (np.arange(5000) + rng.uniform(-0.3, 0.3, 5000)) / RATE
     log = uniform(made(t_s, np.column_stack([np.sin(2 * np.pi * 60.0 * t_s)] * 3)))
     np.testing.assert_allclose(np.diff(log.t_s), 1.0 / RATE, rtol=1e-6)
-    np.testing.assert_allclose(log.force_n[:, 0], np.sin(2 * np.pi * 60.0 * log.t_s), atol=2e-4)
+    np.testing.assert_allclose(log.force_n[:, 0], np.sin(2 * np.pi * 60.0 * log.t_s), atol=2e-3)
     assert "even grid" in log.notes[-1]
 
 
@@ -120,7 +120,7 @@ def test_gaps_stay_gaps_and_filters_do_not_cross_them() -> None:
     log = filtered(made(t_s[keep], force[keep]), Filter(kind="lowpass", hz=100.0))
     inside = (log.t_s < 0.0999) | (log.t_s > 0.2001)
     np.testing.assert_allclose(log.force_n[inside], force[inside], atol=1e-9)
-    assert log.gaps == pytest.approx([(0.0999, 0.2001)])
+    assert len(log.gaps) == 1 and log.gaps[0] == pytest.approx((0.1, 0.2), abs=1.5e-4)
 
 
 def test_most_of_a_log_missing_is_refused() -> None:
@@ -131,7 +131,7 @@ def test_most_of_a_log_missing_is_refused() -> None:
 
 def test_offset_and_drift_are_found_in_air() -> None:
     log = log_of(run(), add_n=(3.0, -2.0, 1.0), drift_n_s=(0.5, -0.2, 0.1), noise=0.01)
-    air = ((0.0, 0.7), (6.9, 7.6))
+    air = ((0.0, 0.9), (7.1, 7.6))
     flat = remove_drift(log, air)
     np.testing.assert_allclose(flat.corrections[-1].values["drift_n_s"], (0.5, -0.2, 0.1), atol=0.01)
     np.testing.assert_allclose(flat.force_n, log_of(run(), noise=0.01).force_n, atol=0.1)
@@ -179,5 +179,5 @@ def test_the_steady_cut_is_found_by_the_log_itself() -> None:
     wave = level[:, None] * (1.0 + 0.3 * np.sin(2 * np.pi * 100.0 * t_s))[:, None] + rng.normal(size=(30000, 3))
     begin, end = steady_window(made(t_s, wave))
     assert 0.62 < begin < 0.76 and 2.14 < end < 2.25
-    with pytest.raises(MeasuredError, match="expected at least 0.06 s for a steady cut"):
+    with pytest.raises(MeasuredError, match=r"expected at least 0.06 s for a steady cut"):
         steady_window(tone(100.0, seconds=0.03))
