@@ -32,6 +32,7 @@ class Asked:
     columns: str | None = None
     unit: str | None = None
     rate_hz: float | None = None
+    rpm: float | None = None
     delimiter: str | None = None
     decimal: str | None = None
     group: str | None = None
@@ -144,6 +145,7 @@ def settings_of(asked: Asked, job: Mapping[str, str]) -> ask.CompareSettings:
         decimal=asked.decimal or job.get("decimal"),
         group=asked.group or job.get("group"),
         rate_hz=rate,
+        rpm=asked.rpm,
         unit=asked.unit or job.get("unit"),
     )
     phase: Any = "causal" if asked.causal else "zero"

@@ -31,6 +31,7 @@ _KEYS: dict[str, Callable[[CompareSettings, str], CompareSettings]] = {
     "force_on": lambda s, t: replace(s, read=replace(s.read, force_on=_body(t))),
     "unit": lambda s, t: replace(s, read=replace(s.read, unit=t)),
     "rate_hz": lambda s, t: replace(s, read=replace(s.read, rate_hz=_number("rate_hz", t))),
+    "rpm": lambda s, t: replace(s, read=replace(s.read, rpm=_number("rpm", t))),
     "columns": lambda s, t: replace(s, read=replace(s.read, columns=tuple(c.strip() for c in t.split(",")))),
     "group": lambda s, t: replace(s, read=replace(s.read, group=t)),
 }

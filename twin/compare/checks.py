@@ -15,6 +15,7 @@ from twin.measured.spindle import SpindleSpeed
 
 #: Forces that differ by this factor or its inverse are in another unit.
 _UNIT_FACTORS = (150.0, 7000.0)
+_LEVEL_SAMPLES = 50_000
 _SPEED_WITHIN = 0.01
 _POOR_FIT = 0.7
 _FAR_BETTER = 0.15
@@ -28,13 +29,14 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
     Raises:
         CompareError: they are, and the unit was not given.
     """
-    measured, simulated = _level(log.force_n - np.median(log.force_n, axis=0)), _level(run.force_n)
+    even = run.at(np.linspace(*run.span_s, _LEVEL_SAMPLES))
+    measured, simulated = _level(log.force_n), _level(even)
     if not measured > 0.0:
         raise CompareError(f"{log.source}: all forces are equal: nothing was measured")
     for ratio, how, unit in ((simulated / measured, "smaller", "kN"), (measured / simulated, "larger", "mN")):
         if _UNIT_FACTORS[0] < ratio < _UNIT_FACTORS[1]:
             text = (
-                f"{log.source}: forces are {ratio:.0f} times {how} than the run's (level {measured:.4g} N, expected "
+                f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, expected "
                 f"about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any --unit makes this a warning"
             )
             if settings.read.unit is None:
@@ -43,8 +45,9 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
 
 
 def _level(force_n: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> float:
-    """High level of the resultant, without its peaks."""
-    return float(np.percentile(np.sqrt(np.sum(force_n**2, axis=1)), 90.0))
+    """High level of the resultant, without its middle and without single spikes; a cut may be a small part of a long record."""
+    moving = force_n - np.median(force_n, axis=0)
+    return float(np.percentile(np.sqrt(np.sum(moving**2, axis=1)), 99.8))
 
 
 def check_rate(log: ForceLog, rpm: float, teeth: int) -> Iterator[str]:

@@ -103,6 +103,7 @@ def compare_files(run: str | PathLike[str], measured: str | PathLike[str], setti
         delimiter=how.delimiter,
         decimal=how.decimal,
         group=how.group,
+        rpm=how.rpm,
     )
     log = force_log(raw, how.axis_map, force_on=how.force_on, unit=how.unit)
     return compare(read_run_forces(Path(run)), log, settings)

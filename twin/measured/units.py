@@ -48,6 +48,8 @@ TIME_NAME = re.compile(
     r"(?:.*[\s_.-])?(?:times?|zeit|temps|tiempo|timestamp|seconds|elapsed)(?:[\s_.-].*)?)$",
     re.IGNORECASE,
 )
+#: Names of a column of the spindle's angle.
+ANGLE_NAME = re.compile(r"angle|\bphi\b|theta|winkel|encoder|rotat|spindle[\s_]*pos", re.IGNORECASE)
 _BRACKETS = re.compile(r"^(?P<base>.*?)\s*[\[({<]\s*(?P<unit>[^\[\](){}<>]*?)\s*[\])}>]\s*:?$")
 _SLASH = re.compile(r"^(?P<base>.+?)\s*(?:/|,|\bin\b)\s*(?P<unit>\S+)$")
 _TAIL = re.compile(r"^(?P<base>.+?)[_ ](?P<unit>[^_ ]+)$")
