@@ -36,8 +36,8 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
     for ratio, how, unit in ((simulated / measured, "smaller", "kN"), (measured / simulated, "larger", "mN")):
         if _UNIT_FACTORS[0] < ratio < _UNIT_FACTORS[1]:
             text = (
-                f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, expected "
-                f"about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any --unit makes this a warning"
+                f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, "
+                f"expected about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; with any it is a warning"
             )
             if settings.read.unit is None:
                 raise CompareError(text)
@@ -45,7 +45,7 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
 
 
 def _level(force_n: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> float:
-    """High level of the resultant, without its middle and without single spikes; a cut may be a small part of a long record."""
+    """High level of the resultant less its middle, single spikes left out; a cut may be a small part of a record."""
     moving = force_n - np.median(force_n, axis=0)
     return float(np.percentile(np.sqrt(np.sum(moving**2, axis=1)), 99.8))
 

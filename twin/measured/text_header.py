@@ -83,9 +83,11 @@ def _units_row(above: Sequence[list[str]], layout: Layout) -> list[str] | None:
     if not above or len(above[-1]) > layout.width:
         return None
     row = above[-1]
-    known = [is_unit_text(f) for f in row if f not in ("", "-", "[]", "[-]", "()")]
-    looks = known and sum(known) >= 0.5 * len(known) and (len(row) == layout.width or len(above) > 1)
-    if not looks or any(find_unit(f) is None and len(f) > 8 for f in row):
+    told = [f for f in row if f not in ("", "-", "[]", "[-]", "()")]
+    known = sum(is_unit_text(f) or f[:1] in "[(" for f in told)
+    named_above = len(above) > 1 and _is_names(above[-2], layout)
+    needed = 0.5 * len(told) if named_above else len(told)
+    if not told or known < needed or any(find_unit(f) is None and len(f) > 8 for f in row):
         return None
     return [f.strip("[](){}<> ") for f in row] + [""] * (layout.width - len(row))
 
