@@ -37,7 +37,7 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
         if _UNIT_FACTORS[0] < ratio < _UNIT_FACTORS[1]:
             text = (
                 f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, "
-                f"expected about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; with any it is a warning"
+                f"expected about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any makes this a warning"
             )
             if settings.read.unit is None:
                 raise CompareError(text)

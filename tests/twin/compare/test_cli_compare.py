@@ -87,9 +87,9 @@ def test_map_and_body(archive: Path, tmp_path: Path, capsys: pytest.CaptureFixtu
     turned = replace(log, force_n=frozen(np.column_stack([-y, -x, z]), "force_n", (None, 3)))
     path = write_log(tmp_path / "dyno.csv", turned, "t_s,A,B,C")
     found = compared(capsys, archive, path, "--map", "x=-B,y=-A,z=C", *WINDOWS)
-    assert all(e["max_n"] < 1e-3 for w in found["windows"] for e in w["errors"].values())
+    assert all(e["max_n"] < 0.02 for w in found["windows"] for e in w["errors"].values())
     found = compared(capsys, archive, path, "--map", "x=B,y=A,z=-C", "--force-on", "workpiece", *WINDOWS)
-    assert all(e["max_n"] < 1e-3 for w in found["windows"] for e in w["errors"].values())
+    assert all(e["max_n"] < 0.02 for w in found["windows"] for e in w["errors"].values())
     message = failed(capsys, archive, path)
     assert 'columns are A, B, C; give them with their signs, e.g. --map "x=A,y=B,z=C"' in message
     assert "no column 'Q'" in failed(capsys, archive, path, "--map", "x=Q,y=A,z=C")
