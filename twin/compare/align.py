@@ -121,15 +121,23 @@ class _Grid:
         coefficient = np.where(weight > 0.0, coefficient, 0.0)
         return coefficient, weight, self.log_begin_s - self.run_begin_s + shifts / self.rate_hz
 
-    def _sums(self, log_axis: int, run_axis: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Covariance and variances over the overlap, times its length, and the length, at every shift."""
-        m = self.log_n[:, log_axis] - self.log_n[:, log_axis].mean()
-        s = self.run_n[:, run_axis] - self.run_n[:, run_axis].mean()
+    def _sums(
+        self, log_axis: int, run_axis: int, *, centred: bool = True
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Covariance and variances over the overlap, times its length, and the length, at every shift.
+
+        Args:
+            centred: False leaves the means in: sums of products and squares.
+        """
+        m, s = self.log_n[:, log_axis], self.run_n[:, run_axis]
+        if centred:
+            m, s = m - m.mean(), s - s.mean()
         shifts = np.arange(-(len(s) - 1), len(m))
         in_m = np.maximum(shifts, 0), np.minimum(shifts + len(s), len(m))
         in_s = np.maximum(-shifts, 0), np.minimum(len(m) - shifts, len(s))
         count = (in_m[1] - in_m[0]).astype(float)
-        sum_m, sum_s = _total(m, *in_m), _total(s, *in_s)
+        sum_m = _total(m, *in_m) if centred else np.zeros(len(shifts))
+        sum_s = _total(s, *in_s) if centred else np.zeros(len(shifts))
         both = np.asarray(signal.correlate(m, s, mode="full", method="fft")) - sum_m * sum_s / count
         var_m = _total(m * m, *in_m) - sum_m**2 / count
         var_s = _total(s * s, *in_s) - sum_s**2 / count
@@ -231,6 +239,8 @@ def _top(scores: FloatArray, at: int) -> float:
 def better_axes(run: RunForces, log: ForceLog) -> tuple[dict[str, str], float]:
     """Which signed axis of the log fits each axis of the run best, at its own best delay, and the score of that.
 
+    The means count here: in a steady slot two turned signs are half a tooth period of delay, and only means tell them.
+
     Returns:
         for x, y, z of the tool the signed axis of the log as it is now, e.g. ``{"x": "-y", ...}``.
     """
@@ -238,7 +248,7 @@ def better_axes(run: RunForces, log: ForceLog) -> tuple[dict[str, str], float]:
     axes = [AXES.index(a) for a in log.axes]
     if len(axes) < 3:
         return {a: a for a in log.axes}, 0.0
-    sums = {(i, j): grid._sums(i, j) for i in axes for j in axes}
+    sums = {(i, j): grid._sums(i, j, centred=False) for i in axes for j in axes}
     count = sums[axes[0], axes[0]][3]
     shorter = min(len(grid.run_n), len(grid.log_n))
     weight = np.where(count >= _LEAST_OVERLAP * shorter, np.sqrt(count / shorter), 0.0)

@@ -17,7 +17,7 @@ from twin.measured.spindle import SpindleSpeed
 _UNIT_FACTORS = (150.0, 7000.0)
 _LEVEL_SAMPLES = 50_000
 _SPEED_WITHIN = 0.01
-_POOR_FIT = 0.7
+_POOR_FIT = 0.75
 _FAR_BETTER = 0.15
 #: Delays that fit as well are worth a word when they lie this part of the log apart.
 _FAR_RIVALS = 0.25
@@ -37,7 +37,7 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
         if _UNIT_FACTORS[0] < ratio < _UNIT_FACTORS[1]:
             text = (
                 f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, "
-                f"expected about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any makes this a warning"
+                f"expected about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any makes it a warning"
             )
             if settings.read.unit is None:
                 raise CompareError(text)
@@ -92,24 +92,30 @@ def check_overlap(run: RunForces, log: ForceLog, lag_s: float) -> Gap:
     return both
 
 
-def check_fit(run: RunForces, log: ForceLog, score: float, settings: CompareSettings) -> Iterator[str]:
-    """A poor likeness: are the axes right?"""
-    if score >= _POOR_FIT:
+def check_fit(run: RunForces, log: ForceLog, score: float, likeness: float, settings: CompareSettings) -> Iterator[str]:
+    """A poor likeness: are the axes right?
+
+    Args:
+        score: correlation, each axis less its mean.
+        likeness: the same with the means left in.
+    """
+    if min(score, likeness) >= _POOR_FIT:
         return
     axes, better = better_axes(run, log)
-    if better > max(score, 0.0) + _FAR_BETTER and any(axes[a] != a for a in axes):
+    if better > max(likeness, 0.0) + _FAR_BETTER and any(axes[a] != a for a in axes):
+        turned = ", ".join(f"{a} = {axes[a]}" for a in AXES)
         yield (
-            f"{log.source}: correlation {score:.2f}; {better:.2f} with {', '.join(f'{a} = {axes[a]}' for a in AXES)} "
-            f"of the log as it is mapped now: try {_hint(axes, log, settings)}"
+            f"{log.source}: likeness {likeness:.2f}, means included; {better:.2f} with {turned} of the log as it is "
+            f"mapped now: try {_hint(axes, log, settings)}"
         )
-    elif settings.lag != "auto" and better > max(score, 0.0) + _FAR_BETTER:
+    elif settings.lag != "auto" and better > max(likeness, 0.0) + _FAR_BETTER:
         found = find_delay(run, log)
         yield (
             f"{log.source}: correlation {score:.2f} with the lag given, {found.score:.2f} with {found.lag_s:.6f} s: "
             "try --lag auto"
         )
-    else:
-        yield f"{log.source}: correlation {score:.2f} at best: the log does not look like the run"
+    elif score < _POOR_FIT:
+        yield f"{log.source}: correlation {score:.2f}: the log does not look much like the run"
 
 
 def _hint(axes: dict[str, str], log: ForceLog, settings: CompareSettings) -> str:
