@@ -66,10 +66,9 @@ def run_one(run: Path, measured: Path | None, asked: Asked, outputs: Outputs) ->
     Raises:
         TwinError: a mistake that the user can mend.
     """
-    from twin.archive import run_info
     from twin.cli.console import results, warn
 
-    job = _job_settings(run_info(run).header.parameters)
+    job = _job_settings(run)
     log = measured or (Path(job["file"]) if "file" in job else None)
     if log is None:
         raise CompareError(f"{run}: no log given, and its job has no measured.file; expected RUN.mcap MEASURED")
@@ -94,7 +93,7 @@ def run_batch(table: Path, asked: Asked, outputs: Outputs) -> None:
     from twin.compare.batch import batch_csv, compare_batch
 
     rows = []
-    for row in compare_batch(table, settings_of(asked, {})):
+    for row in compare_batch(table, lambda run: settings_of(asked, _job_settings(run))):
         rows.append(row)
         if row.found is None:
             fail(f"{table}, row {row.number} ({row.name}): {row.message}")
@@ -166,8 +165,11 @@ def settings_of(asked: Asked, job: Mapping[str, str]) -> ask.CompareSettings:
     )
 
 
-def _job_settings(parameters: Mapping[str, str]) -> dict[str, str]:
+def _job_settings(run: Path) -> dict[str, str]:
     """The job's ``[measured]`` table, as the run's archive keeps it."""
+    from twin.archive import run_info
+
+    parameters = run_info(run).header.parameters
     return {k.removeprefix(_TABLE): v for k, v in parameters.items() if k.startswith(_TABLE)}
 
 

@@ -25,6 +25,8 @@ _INTERVAL = re.compile(
     re.IGNORECASE,
 )
 _COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+|;+|')\s*")
+#: A name with its unit in brackets, in a line that is set apart by blanks.
+_WITH_UNIT = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +77,12 @@ def find_header(
 def _fields(line: str, layout: Layout) -> list[str]:
     """Fields of a line above the numbers, without the mark of a comment."""
     bare = _COMMENT.sub("", line, count=1)
-    return fields_of(bare, layout.delimiter)
+    fields = fields_of(bare, layout.delimiter)
+    if layout.delimiter is None and len(fields) != layout.width:
+        for wider in (re.split(r"\s{2,}|\t", bare.strip()), _WITH_UNIT.findall(bare)):
+            if len(wider) == layout.width:
+                return [f.strip() for f in wider]
+    return fields
 
 
 def _units_row(above: Sequence[list[str]], layout: Layout) -> list[str] | None:
