@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from twin.cli.compare import compare
 from twin.cli.export import export
 from twin.cli.info import info
 from twin.cli.mesh import mesh
@@ -24,7 +25,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, mesh, schema):
+for command in (replay, view, info, export, compare, mesh, schema):
     app.command()(command)
 
 

@@ -182,6 +182,8 @@ def _allowed_list(items: tuple[Any, ...]) -> str:
         return f"a list of {_COUNTS[len(items)]} numbers"
     inner = _bare(items[0])
     is_table = isinstance(inner, type) and issubclass(inner, BaseModel)
+    if inner is str:
+        return "a list of texts"
     return "a list of tables" if is_table else "a list of numbers"
 
 
