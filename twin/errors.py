@@ -38,3 +38,11 @@ class ReplayError(TwinError):
 
 class CollisionError(ReplayError):
     """A collision in a strict replay."""
+
+
+class MeasuredError(TwinError):
+    """A measured log that cannot be read, or does not say what is asked of it."""
+
+
+class CompareError(TwinError):
+    """A run and a log that cannot be compared."""
