@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from twin.cli.export import export
+from twin.cli.identify import identify
 from twin.cli.info import info
 from twin.cli.mesh import mesh
 from twin.cli.replay import replay
@@ -24,7 +25,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, mesh, schema):
+for command in (replay, view, info, export, mesh, identify, schema):
     app.command()(command)
 
 

@@ -43,6 +43,7 @@ class Measured:
         rpm: spindle speed.
         window_s: the part of the log that was used.
         samples_per_rev: of the log.
+        zero_n, drift_n_s: shape (3,), what was taken off in the middle of the cut, and its change with time.
         notes: what was found, one line each.
     """
 
@@ -53,6 +54,8 @@ class Measured:
     rpm: float
     window_s: Span | None = None
     samples_per_rev: float = math.inf
+    zero_n: FloatArray | None = None
+    drift_n_s: FloatArray | None = None
     notes: tuple[str, ...] = ()
 
     @property
@@ -123,10 +126,10 @@ def measure(cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, tee
         IdentifyError: fewer than two revolutions in the window.
         MeasuredError: a window outside the log.
     """
-    inside = _inside(log, window, rpm)
-    t_s, force, notes = log.t_s, log.force_n, [*log.notes]
-    baseline, zero_error, told = _baseline(cut, log, found, 0.5 * (window[0] + window[1]), 60.0 / rpm)
-    t, f = t_s[inside], force[inside] - baseline[inside]
+    inside, notes = _inside(log, window, rpm), [*log.notes]
+    zero = _zero(cut, log, found, 0.5 * (window[0] + window[1]), 60.0 / rpm)
+    t = log.t_s[inside]
+    f = log.force_n[inside] - zero.at(t)
     samples = log.rate_hz * 60.0 / rpm
     if fit.speed == "found" and samples > 2.5 * teeth:
         rpm, note = _speed(t, f, rpm, teeth)
@@ -137,15 +140,17 @@ def measure(cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, tee
     harmonics = noise = None
     if count >= 1 and inside.sum() > 4 * count:
         harmonics, noise = of_samples(t, f, rpm * 2.0 * math.pi / 60.0, count)
-    notes += [told, f"steady cut from {used[0]:.3f} to {used[1]:.3f} s, {'as given' if cut.window_s else 'found'}"]
+    notes += [zero.note, f"steady cut from {used[0]:.3f} to {used[1]:.3f} s, {'as given' if cut.window_s else 'found'}"]
     return Measured(
         mean_n=np.where(measured, mean, math.nan),
-        error_n=np.where(measured, np.hypot(error, zero_error), math.nan),
+        error_n=np.where(measured, np.hypot(error, zero.error_n), math.nan),
         harmonics=harmonics,
         noise_n=noise,
         rpm=rpm,
         window_s=used,
         samples_per_rev=samples,
+        zero_n=zero.value_n,
+        drift_n_s=zero.drift_n_s,
         notes=tuple(notes),
     )
 
@@ -196,29 +201,44 @@ def _mean(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> tuple[Fl
     return (at[-1] - at[0]) / (ends[-1] - ends[0]), error, (float(ends[0]), float(ends[-1]))
 
 
-def _baseline(
-    cut: Cut, log: ForceLog, found: Found, middle_s: float, revolution_s: float
-) -> tuple[FloatArray, FloatArray, str]:
-    """What is taken off the force at every sample, its standard error in the middle of the cut, and a note."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Zero:
+    """A line through the air: value in the middle of the cut, slope, standard error there; each of shape (3,)."""
+
+    middle_s: float
+    value_n: FloatArray
+    drift_n_s: FloatArray
+    error_n: FloatArray
+    note: str
+
+    def at(self, t_s: FloatArray) -> FloatArray:
+        """Shape (n, 3)."""
+        return self.value_n + np.outer(t_s - self.middle_s, self.drift_n_s)
+
+
+def _zero(cut: Cut, log: ForceLog, found: Found, middle_s: float, revolution_s: float) -> _Zero:
+    """What is taken off the force."""
     spans = cut.air_s if cut.air_s is not None else found.air_s
-    none = np.zeros_like(log.force_n)
     if cut.zero == "none" or not spans:
         if cut.zero in ("line", "constant"):
             raise IdentifyError(f'{log.source}: no air found for zero = "{cut.zero}"; give air_s = [[from, to], ...]')
         why = "as asked" if cut.zero == "none" else "no air found"
-        return none, np.zeros(3), f"zero not corrected: {why}"
+        return _Zero(middle_s, np.zeros(3), np.zeros(3), np.zeros(3), f"zero not corrected: {why}")
     t, f = _block_means(log, spans, revolution_s)
-    around = len(spans) > 1 and min(a for a, _ in spans) < middle_s < max(b for _, b in spans)
+    around = min(a for a, _ in spans) < middle_s < max(b for _, b in spans)
     line = cut.zero == "line" or (cut.zero == "auto" and around)
     basis = np.column_stack((np.ones(len(t)), t - middle_s)) if line else np.ones((len(t), 1))
     k, *_ = np.linalg.lstsq(basis, f, rcond=None)
     freedom = len(t) - basis.shape[1]
     variance = ((f - basis @ k) ** 2).sum(axis=0) / freedom if freedom > 0 else np.zeros(3)
-    error = np.sqrt(variance * np.linalg.inv(basis.T @ basis)[0, 0])
-    everywhere = np.column_stack((np.ones(len(log.t_s)), log.t_s - middle_s))[:, : basis.shape[1]] @ k
-    told = ", ".join(f"{v:+.2f}" for v in k[0])
-    drift = ", drift " + ", ".join(f"{v:+.3f}" for v in k[1]) + " N/s" if line else ""
-    return everywhere, error, f"zero {told} N{drift} taken off, by {_told(spans)}"
+    error = np.sqrt(variance * np.linalg.pinv(basis.T @ basis)[0, 0])
+    drift = k[1] if line else np.zeros(3)
+    told = f"zero {_listed(k[0], 2)} N" + (f", drift {_listed(drift, 3)} N/s" if line else "")
+    return _Zero(middle_s, k[0], drift, error, f"{told} taken off, by {_told(spans)}")
+
+
+def _listed(values: FloatArray, digits: int) -> str:
+    return ", ".join(f"{v:+.{digits}f}" for v in values)
 
 
 def _block_means(log: ForceLog, spans: Iterable[Span], revolution_s: float) -> tuple[FloatArray, FloatArray]:

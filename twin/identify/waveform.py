@@ -29,7 +29,7 @@ _ALTERNATIONS = 6
 #: Runouts that the search begins with, in feeds per tooth, and directions over half a turn.
 _SIZES = (0.15, 0.4)
 _DIRECTIONS = 6
-_PRECISION = 1e-12
+_PRECISION = 1e-10
 _PHASE_STEP_RAD = 1e-5
 #: Step of slopes over runout, in feeds per tooth; chips end at places that move with it.
 _RUNOUT_STEP = 1e-3
@@ -108,11 +108,11 @@ def fit_waveforms(cuts: Waveforms, guesses: Sequence[FloatArray], *, runout: boo
     """Least squares on waveforms.
 
     Args:
-        guesses: coefficients, shape (6,), that phases are first looked for with.
+        guesses: coefficients, shape (6,), that phases are first looked for with; ordinary ones if there are none.
         runout: whether the runout is unknown.
     """
     search = _Search(cuts, runout)
-    starts = [search.settled(k, r) for k in (*guesses, np.array(START)) for r in search.runouts()]
+    starts = [search.settled(k, r) for k in (guesses or [np.array(START)]) for r in search.runouts()]
     best = min(starts, key=search.cost)
     found = search.refined(best)
     return search.told(found)

@@ -20,7 +20,7 @@ Location: TypeAlias = tuple[str | int, ...]
 _LONGEST_VALUE = 60
 _BOUNDS = {at.Gt: ("above", "gt"), at.Ge: ("at least", "ge"), at.Lt: ("below", "lt"), at.Le: ("at most", "le")}
 _WORDS: dict[Any, str] = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
-_COUNTS = {2: "two", 3: "three"}
+_COUNTS = {2: "two", 3: "three", 6: "six"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +184,7 @@ def _allowed_list(items: tuple[Any, ...]) -> str:
         return f"a list of {_COUNTS[len(items)]} numbers"
     inner = _bare(items[0])
     if get_origin(inner) is tuple:
-        return f"a list of lists of {_COUNTS[len(get_args(inner))]} numbers"
+        return f"a list of {_allowed_list(get_args(inner)).replace('a list', 'lists')}"
     if not isinstance(inner, type):
         return "a list"
     kinds = {BaseModel: "tables", PurePath: "file names", str: "texts"}
