@@ -1,4 +1,4 @@
-"""From a raw log to forces on the tool: axis map, units, signs; spindle angle and trigger where there are such columns."""
+"""From a raw log to forces on the tool: axis map, units, signs; spindle angle and trigger where they are recorded."""
 
 from __future__ import annotations
 

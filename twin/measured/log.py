@@ -104,7 +104,8 @@ class ForceLog:
 
     def resultant_n(self) -> FloatArray:
         """Shape (n,), magnitude of the force over the measured axes."""
-        return np.linalg.norm(self.force_n, axis=1)
+        length: FloatArray = np.linalg.norm(self.force_n, axis=1)
+        return length
 
 
 def gaps_of(t_s: FloatArray, rate_hz: float) -> tuple[Gap, ...]:
