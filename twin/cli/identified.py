@@ -30,7 +30,9 @@ def print_identified(console: Console, cuts: Cuts, result: Identified, *, verbos
     """Print a result."""
     fitted = sum(not cut.held_out for cut in result.cuts)
     told = f", {result.evaluations} simulations of all cuts" if result.evaluations else ""
-    console.print(f"{cuts.path.name}: {fitted} of {len(result.cuts)} cuts fitted, {_HOW[result.method]}{told}\n", markup=False)
+    console.print(
+        f"{cuts.path.name}: {fitted} of {len(result.cuts)} cuts fitted, {_HOW[result.method]}{told}\n", markup=False
+    )
     console.print(_coefficients(result))
     console.print(_quality(result), "\n", markup=False, sep="")
     console.print("Correlation of the errors", style="bold")
@@ -54,7 +56,9 @@ def _coefficients(result: Identified) -> Table:
     for i, name in enumerate(NAMES):
         value, half = float(estimate.values[i]), float(estimate.half_widths[i])
         digits = _digits(half if math.isfinite(half) and half > 0.0 else 1e-3 * abs(value))
-        interval = f"{value - half:.{digits}f} to {value + half:.{digits}f}" if math.isfinite(value + half) else "unknown"
+        interval = (
+            f"{value - half:.{digits}f} to {value + half:.{digits}f}" if math.isfinite(value + half) else "unknown"
+        )
         error = f"{estimate.errors[i]:.{digits}f}" if math.isfinite(estimate.errors[i]) else "unknown"
         unit = "N/mm²" if name.endswith("c") else "N/mm"
         if not math.isfinite(value):
@@ -69,7 +73,9 @@ def _coefficients(result: Identified) -> Table:
 def _quality(result: Identified) -> str:
     estimate = result.estimate
     r2 = ", ".join(
-        f"{axis} {value:.4f}" for axis, value in zip(("all", *_AXES), result.r_squared, strict=True) if math.isfinite(value)
+        f"{axis} {value:.4f}"
+        for axis, value in zip(("all", *_AXES), result.r_squared, strict=True)
+        if math.isfinite(value)
     )
     lines = [f"R² {r2}; condition number {estimate.condition:.3g}; {estimate.dof} degrees of freedom"]
     if estimate.spread_n is not None:
@@ -132,5 +138,5 @@ def _newtons(value: float, *, signed: bool = False) -> str:
 
 
 def _digits(size: float) -> int:
-    """Digits after the point that show two figures of a size."""
-    return max(0, 1 - math.floor(math.log10(size))) if size > 0.0 else 4
+    """Digits after the point that show three figures of a size."""
+    return max(0, 2 - math.floor(math.log10(size))) if size > 0.0 else 4

@@ -39,7 +39,11 @@ def identify(
     out: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--out", metavar="FILE.toml", help="Write the coefficients here, and a plot beside.", show_default=False
+            "-o",
+            "--out",
+            metavar="FILE.toml",
+            help="Write the coefficients here, and a plot beside.",
+            show_default=False,
         ),
     ] = None,
     plot: Annotated[
@@ -48,7 +52,9 @@ def identify(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace output files that are there.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
-    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print how each log was read and corrected.")] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Print how each log was read and corrected.")
+    ] = False,
 ) -> None:
     """Find cutting coefficients from test cuts, with their errors.
 

@@ -37,14 +37,17 @@ class Shared(Table):
     spindle_rpm: float | None = Field(default=None, gt=0.0, description="spindle speed, rpm")
     feed_mm_min: float | None = Field(default=None, gt=0.0, description="feed, mm/min")
     map: str | None = Field(
-        default=None, description="which column with which sign is each axis, e.g. x=-Fy,y=-Fx,z=Fz; by name if not given"
+        default=None,
+        description="which column with which sign is each axis, e.g. x=-Fy,y=-Fx,z=Fz; by name if not given",
     )
     force_on: ForceOn = Field(default="tool", description="body that the mapped forces act on")
     unit: str | None = Field(default=None, description="unit of the force columns where the log does not say it")
     rate_hz: float | None = Field(default=None, gt=0.0, description="sampling rate where the log does not say it, Hz")
     columns: Texts | None = Field(default=None, description="names of the log's columns in place of its header")
     delimiter: str | None = Field(default=None, description="delimiter of a text log; found if not given")
-    decimal: Literal[".", ","] | None = Field(default=None, description="decimal mark of a text log; found if not given")
+    decimal: Literal[".", ","] | None = Field(
+        default=None, description="decimal mark of a text log; found if not given"
+    )
     window_s: Window | None = Field(
         default=None, description="from, to: the steady cut in the log's time; found if not given"
     )
@@ -70,7 +73,8 @@ class Cut(Shared):
     )
     lag_s: float | None = Field(default=None, description="log's time less machine time of the job's run, s")
     spindle_angle_deg: float | None = Field(
-        default=None, description="angle of tooth 0 at the log's time 0, from +x in the sense of rotation; found if not given"
+        default=None,
+        description="angle of tooth 0 at the log's time 0, from +x in the sense of rotation; found if not given",
     )
     holdout: bool = Field(default=False, description="report this cut, but do not fit it")
 
@@ -105,7 +109,9 @@ class Fit(Table):
 class CutsFile(Table):
     """Test cuts with one tool in one material."""
 
-    tool: CutTool | None = Field(default=None, description="the tool, keys as in a job; not needed if all cuts are jobs")
+    tool: CutTool | None = Field(
+        default=None, description="the tool, keys as in a job; not needed if all cuts are jobs"
+    )
     defaults: Shared = Field(default_factory=Shared, description="keys for all cuts that do not give them")
     fit: Fit = Field(default_factory=Fit, description="how the coefficients are found")
     cuts: Annotated[tuple[Cut, ...], Strict(False)] = Field(

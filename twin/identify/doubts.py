@@ -20,20 +20,39 @@ _CORRELATION = 0.98
 _PLAUSIBLE_KTC = (20.0, 20000.0)
 #: Mean forces above this in N, or all below that, speak of another unit.
 _PLAUSIBLE_N = (0.01, 100_000.0)
+#: Waveforms repeat with each tooth but for this part of their size, or the teeth do not cut alike.
+_ALIKE = 0.15
 #: Samples in one tooth passing below which means may be off.
 _LEAST_SAMPLES = 2.0
 
 
 def doubts(
-    cuts: Cuts, estimate: Estimate, results: Sequence[CutResult], at_bounds: Sequence[str]
+    cuts: Cuts, estimate: Estimate, results: Sequence[CutResult], at_bounds: Sequence[str], *, runout: bool
 ) -> Iterator[str]:
-    """One line for each."""
+    """One line for each.
+
+    Args:
+        at_bounds: coefficients on a bound of the search.
+        runout: whether it was found.
+    """
     yield from _undetermined(cuts, estimate)
     yield from _uncertain(estimate)
     yield from _implausible(estimate, results)
+    yield from _logs(cuts, results)
+    yield from _runout(cuts, results, runout)
     if at_bounds:
         yield f"{', '.join(at_bounds)}: at a bound of the search; widen fit.lower and fit.upper, or find out why"
+
+
+def _logs(cuts: Cuts, results: Sequence[CutResult]) -> Iterator[str]:
+    """What the logs leave open."""
     teeth = cuts.tool.teeth if cuts.tool is not None else 1
+    no_air = [r.name for r in results if any("no air found" in note for note in r.measured.notes)]
+    if no_air:
+        yield (
+            f"{', '.join(no_air)}: no air in the log, zero not corrected: "
+            "an offset of the amplifier is taken for force, mostly for edge force"
+        )
     for r in results:
         if r.measured.samples_per_rev < _LEAST_SAMPLES * teeth:
             yield (
@@ -41,6 +60,30 @@ def doubts(
                 f"{_LEAST_SAMPLES * teeth:g} (twice the tooth-passing frequency): its mean may be off"
             )
         yield from (f"{r.name}: {note}" for note in r.measured.notes if "no spindle speed found" in note)
+
+
+def _runout(cuts: Cuts, results: Sequence[CutResult], found: bool) -> Iterator[str]:
+    """Teeth that do not cut alike where the fit supposes that they do."""
+    tool = cuts.tool
+    if tool is None or found or tool.teeth < 2 or tool.runout_mm > 0.0 or tool.pitch_deg is not None:
+        return
+    worst = max(((_unlike(r, tool.teeth), r.name) for r in results if not r.held_out), default=(0.0, ""))
+    if worst[0] > _ALIKE:
+        yield (
+            f"{worst[1]}: {100.0 * worst[0]:.0f} % of the force's variation does not repeat with each tooth: runout; "
+            "it lessens the contact of thin chips and biases edge coefficients; "
+            "find it with --method waveform --runout, or give tool.runout_mm"
+        )
+
+
+def _unlike(result: CutResult, teeth: int) -> float:
+    """Size of the harmonics that are no multiples of the tooth-passing frequency, by that of those that are."""
+    c = result.measured.harmonics
+    if c is None or len(c) <= teeth:
+        return 0.0
+    power = (np.abs(c[:, result.measured.axes]) ** 2).sum(axis=1)
+    with_teeth = float(power[teeth::teeth].sum())
+    return math.sqrt(float(power[1:].sum() - with_teeth) / with_teeth) if with_teeth > 0.0 else 0.0
 
 
 def _undetermined(cuts: Cuts, estimate: Estimate) -> Iterator[str]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy import optimize, stats
 
 from twin.arrays import FloatArray
+from twin.identify.cuts_file import Name
 from twin.identify.straight import NAMES
 
 #: A singular value below this part of the largest, columns scaled to length 1, is none.
@@ -69,9 +70,10 @@ class Estimate:
         return out
 
 
-def fixed_values(fixed: Mapping[str, float]) -> FloatArray:
+def fixed_values(fixed: Mapping[Name, float]) -> FloatArray:
     """Shape (6,), the given values in order, NaN where a coefficient is to be found."""
-    return np.array([fixed.get(name, math.nan) for name in NAMES])
+    named = {str(name): value for name, value in fixed.items()}
+    return np.array([named.get(name, math.nan) for name in NAMES])
 
 
 def quantile(dof: float) -> float:

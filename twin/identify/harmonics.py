@@ -111,5 +111,7 @@ def find_speed(t_s: FloatArray, force_n: FloatArray, rpm: float, teeth: int) -> 
     trials = np.linspace(-SPEED_RANGE, SPEED_RANGE, 2 * math.ceil(_FINENESS * SPEED_RANGE * cycles) + 1)
     best = float(trials[int(np.argmin([lost(p) for p in trials]))])
     width = float(trials[1] - trials[0])
-    found = optimize.minimize_scalar(lost, bounds=(best - width, best + width), method="bounded", options={"xatol": 1e-9})
+    found = optimize.minimize_scalar(
+        lost, bounds=(best - width, best + width), method="bounded", options={"xatol": 1e-9}
+    )
     return rpm * (1.0 + float(found.x))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,7 +19,8 @@ from twin.identify.measure import Measured, given_mean, log_of, measure, straigh
 from twin.identify.model import Model, pass_model
 from twin.identify.result import CutResult, Identified, Runout
 from twin.identify.steady import find_cut
-from twin.identify.waveform import Waveforms, fit_waveforms
+from twin.identify.straight import reach_mm
+from twin.identify.waveform import Waveforms, fit_waveforms, measured_harmonics
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,7 +72,7 @@ def identify_prepared(
     if method == "waveform":
         return _by_waveforms(cuts, prepared, fitted)
     given = equations([p.model for p in fitted], [p.measured for p in fitted], cuts.fit)
-    evaluations, at_bounds = 0, ()
+    evaluations, at_bounds = 0, tuple[str, ...]()
     if method == "mean":
         estimate = fit_means(given, cuts.fit)
     else:
@@ -92,8 +93,9 @@ def _straight_cut(cuts: Cuts, cut: Cut) -> Prepared:
         return Prepared(cut, held_out, model, given_mean(cut, cut.spindle_rpm))
     log = log_of(cut)
     found = find_cut(log.t_s, log.force_n, 60.0 / cut.spindle_rpm)
-    window = straight_window(cut, log, found, 0.5 * tool.diameter_mm, cut.spindle_rpm, cut.feed_mm_min / 60.0)
-    return Prepared(cut, held_out, model, measure(cut, log, found, window, cut.spindle_rpm, tool.teeth, cuts.fit))
+    window = straight_window(cut, log, found, reach_mm(model.cut), cut.spindle_rpm, cut.feed_mm_min / 60.0)
+    measured = measure(cut, log, found, window, cut.spindle_rpm, tool.teeth, cuts.fit)
+    return Prepared(cut, held_out, model.at_speed(cut.feed_mm_min / measured.rpm), measured)
 
 
 def _job_cut(cuts: Cuts, cut: Cut) -> Prepared:
@@ -127,8 +129,6 @@ def _lag(cut: Cut, run: JobRun, cut_s: tuple[float, float], begins: bool) -> flo
 
 
 def _with_note(measured: Measured, note: str) -> Measured:
-    from dataclasses import replace
-
     return replace(measured, notes=(*measured.notes, note))
 
 
@@ -136,11 +136,13 @@ def _by_waveforms(cuts: Cuts, prepared: list[Prepared], fitted: list[Prepared]) 
     for p in fitted:
         if p.measured.harmonics is None:
             why = (
-                f"its log has {p.measured.samples_per_rev:.1f} samples a revolution, too few for its tooth-passing frequency"
+                f"its log has {p.measured.samples_per_rev:.1f} samples a revolution, too few for its teeth"
                 if p.cut.log
                 else "it has a mean force only"
             )
-            raise IdentifyError(f"{cuts.path}: cut {p.cut.name} has no waveform: {why}; use --method mean, or hold it out")
+            raise IdentifyError(
+                f"{cuts.path}: cut {p.cut.name} has no waveform: {why}; use --method mean, or hold it out"
+            )
     if cuts.fit.runout and not all(p.model.has_runout for p in fitted):
         names = ", ".join(p.cut.name for p in fitted if not p.model.has_runout)
         raise IdentifyError(f"{cuts.path}: fit.runout = true: the runout of jobs is in their files ({names})")
@@ -159,7 +161,9 @@ def _by_waveforms(cuts: Cuts, prepared: list[Prepared], fitted: list[Prepared]) 
     phases = dict(zip([p.cut.name for p in fitted], found.phases.tolist(), strict=True))
     results = tuple(_with_waveform(p, k, runout_mm, phases.get(p.cut.name)) for p in prepared)
     values = together.values()
-    axis = np.concatenate([np.repeat(np.flatnonzero(m.axes), 2 * len(m.harmonics) - 1) for m in together.measured])
+    axis = np.concatenate(
+        [np.repeat(np.flatnonzero(m.axes), 2 * len(measured_harmonics(m)) - 1) for m in together.measured]
+    )
     r_squared = _r_squared(values, together.design(found.phases, runout_mm) @ k, axis.astype(np.float64))
     return _told(cuts, "waveform", found.estimate, r_squared, results, found.runout, found.evaluations, ())
 
@@ -183,7 +187,7 @@ def _with_waveform(p: Prepared, k: FloatArray, runout_mm: FloatArray | None, pha
     if phase_rad is None:
         given = math.nan if p.cut.spindle_angle_deg is None else math.radians(p.cut.spindle_angle_deg)
         alone = Waveforms([p.model], [measured], np.array([given]), k)
-        phase_rad = float(fit_waveforms_phase(alone, k, own))
+        phase_rad = alone.phase(k, own)
     fitted = p.model.harmonics(len(measured.harmonics) - 1, own) @ k
     return CutResult(
         name=p.cut.name,
@@ -193,11 +197,6 @@ def _with_waveform(p: Prepared, k: FloatArray, runout_mm: FloatArray | None, pha
         fitted_harmonics=fitted,
         phase_rad=phase_rad,
     )
-
-
-def fit_waveforms_phase(alone: Waveforms, k: FloatArray, runout_mm: FloatArray | None) -> float:
-    """The phase of one cut for given coefficients."""
-    return float(alone.best_phases(k, runout_mm)[0])
 
 
 def _r_squared(values: FloatArray, fitted: FloatArray, axis: FloatArray) -> tuple[float, float, float, float]:
@@ -230,5 +229,5 @@ def _told(
         evaluations=evaluations,
         at_bounds=at_bounds,
         source=cuts.fit.source,
-        warnings=tuple(doubts(cuts, estimate, results, at_bounds)),
+        warnings=tuple(doubts(cuts, estimate, results, at_bounds, runout=runout is not None)),
     )

@@ -92,7 +92,7 @@ class JobModel:
         """See `Model`."""
         return np.asarray(self.force_n.sum(axis=0) / self.samples)
 
-    def harmonics(self, count: int, runout_mm: FloatArray | None = None) -> ComplexArray:
+    def harmonics(self, count: int, runout_mm: FloatArray | None = None) -> ComplexArray:  # noqa: ARG002
         """See `Model`; the runout is the job's, whatever is asked."""
         turn = np.exp(-1j * np.outer(np.arange(count + 1), self.angle_rad))
         c = np.tensordot(turn, self.force_n, axes=(1, 0)) * (2.0 / self.samples)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import optimize
 
 from twin.arrays import FloatArray
-from twin.identify.cuts_file import Fit
+from twin.identify.cuts_file import Fit, Name
 from twin.identify.estimate import Estimate, fit_linear, fixed_values
 from twin.identify.measure import Measured
 from twin.identify.model import Model
@@ -140,6 +140,6 @@ def _told(
     return Search(replace(estimate, values=values), evaluations, tuple(names))
 
 
-def _vector(default: tuple[float, ...], given: dict[str, float] | dict[object, float]) -> FloatArray:
-    named: dict[str, float] = {str(k): v for k, v in given.items()}
+def _vector(default: tuple[float, ...], given: Mapping[Name, float]) -> FloatArray:
+    named = {str(name): value for name, value in given.items()}
     return np.array([named.get(name, value) for name, value in zip(NAMES, default, strict=True)])

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from twin.arrays import FloatArray
 from twin.errors import IdentifyError, MeasuredError
 from twin.identify.cuts_file import Cut, Fit
 from twin.identify.harmonics import SPEED_RANGE, ComplexArray, find_speed, of_samples
-from twin.identify.steady import Found, Span, find_cut, steady_part
+from twin.identify.steady import Found, Span, steady_part
 from twin.measured import AxisMap, ForceLog, force_log, read_log
 from twin.measured.axes import aliases
 from twin.measured.log import AXES
@@ -92,14 +93,12 @@ def log_of(cut: Cut) -> ForceLog:
         MeasuredError: see `twin.measured.read_log` and `twin.measured.force_log`.
     """
     assert cut.log is not None
-    raw = read_log(
-        cut.log, rate_hz=cut.rate_hz, columns=cut.columns, delimiter=cut.delimiter, decimal=cut.decimal
-    )
+    raw = read_log(cut.log, rate_hz=cut.rate_hz, columns=cut.columns, delimiter=cut.delimiter, decimal=cut.decimal)
     axis_map = AxisMap.parse(cut.map) if cut.map is not None else None
     return force_log(raw, axis_map, force_on=cut.force_on, unit=cut.unit)
 
 
-def straight_window(cut: Cut, log: ForceLog, found: Found, radius_mm: float, rpm: float, feed_mm_s: float) -> Span:
+def straight_window(cut: Cut, log: ForceLog, found: Found, reach_mm: float, rpm: float, feed_mm_s: float) -> Span:
     """The steady part of a straight cut in its log's time.
 
     Raises:
@@ -107,11 +106,11 @@ def straight_window(cut: Cut, log: ForceLog, found: Found, radius_mm: float, rpm
     """
     if cut.window_s is not None:
         return cut.window_s
-    steady = steady_part(found, radius_mm, feed_mm_s, 60.0 / rpm)
+    steady = steady_part(found, reach_mm, feed_mm_s, 60.0 / rpm)
     if steady is None:
         raise IdentifyError(
             f"{log.source}: the cut from {found.cut_s[0]:.3f} to {found.cut_s[1]:.3f} s is too short to have a steady "
-            f"part: the tool enters and leaves for {radius_mm / feed_mm_s:.3f} s each; give window_s = [from, to]"
+            f"part: the tool enters and leaves for {reach_mm / feed_mm_s:.3f} s each; give window_s = [from, to]"
         )
     return steady
 
@@ -183,7 +182,10 @@ def _speed(t_s: FloatArray, force_n: FloatArray, rpm: float, teeth: int) -> tupl
     """The speed of the waveform; the given one where none near it stands out."""
     found = find_speed(t_s, force_n, rpm, teeth)
     if abs(found / rpm - 1.0) > 0.98 * SPEED_RANGE:
-        return rpm, f"no spindle speed found within {100 * SPEED_RANGE:g} % of {rpm:g} rpm: taken as given; is it right?"
+        return (
+            rpm,
+            f"no spindle speed found within {100 * SPEED_RANGE:g} % of {rpm:g} rpm: taken as given; is it right?",
+        )
     return found, f"spindle speed {found:.2f} rpm found, {rpm:g} given"
 
 
@@ -248,7 +250,7 @@ def _block_means(log: ForceLog, spans: Iterable[Span], revolution_s: float) -> t
         count = max(1, int((last - first) / revolution_s))
         edges = np.linspace(first, last, count + 1)
         at = np.searchsorted(log.t_s, edges)
-        for a, b in zip(at[:-1], at[1:], strict=True):
+        for a, b in pairwise(at.tolist()):
             if b > a:
                 times.append(float(log.t_s[a:b].mean()))
                 means.append(log.force_n[a:b].mean(axis=0))
@@ -259,6 +261,3 @@ def _block_means(log: ForceLog, spans: Iterable[Span], revolution_s: float) -> t
 
 def _told(spans: Iterable[Span]) -> str:
     return "air from " + " and ".join(f"{a:.3f} to {b:.3f} s" for a, b in spans)
-
-
-__all__ = ["Found", "Measured", "find_cut", "given_mean", "harmonic_count", "log_of", "measure", "straight_window"]

@@ -65,6 +65,10 @@ class PassModel:
         """See `Model`."""
         return True
 
+    def at_speed(self, feed_per_rev_mm: float) -> PassModel:
+        """The same pass with the feed per revolution that goes with the speed found."""
+        return PassModel(replace(self.cut, feed_per_rev_mm=feed_per_rev_mm))
+
     def means(self) -> FloatArray:
         """See `Model`."""
         return mean_matrix(self.cut)

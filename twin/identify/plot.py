@@ -50,7 +50,7 @@ def _figure(result: Identified) -> Figure:
 def _title(result: Identified) -> str:
     estimate = result.estimate
     values = [
-        f"{name} {value:.4g}" + (f" ± {half:.2g}" if math.isfinite(half) and not fixed else "")
+        f"{name} {value:.4g}" + (f" ± {_three(half)}" if math.isfinite(half) and not fixed else "")
         for name, value, half, fixed in zip(
             NAMES, estimate.values, estimate.half_widths, estimate.fixed.tolist(), strict=True
         )
@@ -61,6 +61,11 @@ def _title(result: Identified) -> str:
         f"{source}{result.file.name}: measured and fitted force on the tool ({result.method}), {r2}\n"
         f"{',  '.join(values)}   (c: N/mm², e: N/mm, ± {100 * CONFIDENCE:g} %)"
     )
+
+
+def _three(value: float) -> str:
+    """Three figures, without an exponent."""
+    return f"{value:.{max(0, 2 - math.floor(math.log10(value)))}f}" if value > 0.0 else "0"
 
 
 def _means(axes: Axes, result: Identified, axis: int) -> None:
@@ -76,7 +81,9 @@ def _means(axes: Axes, result: Identified, axis: int) -> None:
             bar.set(color=_HELD, hatch="//", alpha=0.35)
     axes.errorbar(at, measured, yerr=error, fmt="o", ms=4.5, color="black", lw=1.0, capsize=3, label="measured")
     axes.axhline(0.0, color="black", lw=0.6)
-    axes.set_title(f"mean F{_AXES[axis]}, N" + (" (hatched: held out)" if any(c.held_out for c in cuts) else ""), fontsize=9)
+    axes.set_title(
+        f"mean F{_AXES[axis]}, N" + (" (hatched: held out)" if any(c.held_out for c in cuts) else ""), fontsize=9
+    )
     _cut_names(axes, at, [cut.name for cut in cuts])
     axes.legend(fontsize=7, frameon=False)
 

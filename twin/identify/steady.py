@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,12 +14,12 @@ Span = tuple[float, float]
 #: The force must vary so many times more in the cut than in air for air to be told from cut.
 _CONTRAST = 4.0
 #: Between the levels of air and cut, where one ends and the other begins.
-_THRESHOLD = 0.2
+_THRESHOLD = 0.15
 #: Air nearer than so many revolutions to the cut is left out.
 _CLEAR_REVOLUTIONS = 3
 #: Least revolutions of a stretch of air that is used.
 _LEAST_AIR = 5
-#: How much farther than the tool's radius the tool goes before the cut is called steady.
+#: How much farther than its reach the tool goes before the cut is called steady.
 _ENTRY = 1.05
 
 
@@ -61,12 +62,16 @@ def find_cut(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> Found
     return Found(cut, air, first > 0, last < len(activity) - 1)
 
 
-def steady_part(found: Found, radius_mm: float, feed_mm_s: float, revolution_s: float) -> Span | None:
+def steady_part(found: Found, reach_mm: float, feed_mm_s: float, revolution_s: float) -> Span | None:
     """The part of a straight cut in which the whole front of the tool is in the stock; None where there is none.
 
-    From the first touch the tool goes its radius until its front is in; it begins to leave its radius before the end.
+    From the first touch the tool goes as far as its front reaches before its axis until all of it is in, and so far
+    before the end it begins to leave.
+
+    Args:
+        reach_mm: how far engaged points lie before the axis.
     """
-    trim = max(_ENTRY * radius_mm / feed_mm_s, 2.0 * revolution_s)
+    trim = max(_ENTRY * reach_mm / feed_mm_s, 2.0 * revolution_s)
     first = found.cut_s[0] + (trim if found.begins else 0.0)
     last = found.cut_s[1] - (trim if found.ends else 0.0)
     return (first, last) if last - first >= 3.0 * revolution_s else None
@@ -90,7 +95,7 @@ def _closed(cutting: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> np.ndarray[t
     """Holes of one or two revolutions filled."""
     out = cutting.copy()
     on = np.flatnonzero(cutting)
-    for a, b in zip(on[:-1], on[1:], strict=True):
+    for a, b in pairwise(on.tolist()):
         if 1 < b - a <= 3:
             out[a:b] = True
     return out

@@ -64,6 +64,13 @@ def strip_of(direction: Direction, nominal_radius_mm: float, radial_depth_mm: fl
     return (-math.inf, wall) if direction == "down" else (-wall, math.inf)
 
 
+def reach_mm(cut: StraightPass) -> float:
+    """How far the farthest engaged point lies before the cutter's axis."""
+    radius = float(cut.shape.radius_mm(cut.axial_depth_mm))
+    nearest = max(cut.strip_mm[0], -cut.strip_mm[1], 0.0)
+    return math.sqrt(max(0.0, radius**2 - nearest**2))
+
+
 def mean_matrix(cut: StraightPass) -> FloatArray:
     """Mean force on the tool for unit coefficients, shape (3, 6): the mean is this matrix times the coefficients.
 
@@ -96,7 +103,7 @@ def response(cut: StraightPass, rows: int = ROWS) -> FloatArray:
     """
     edges = _edges(cut, max(8, min(_MOST_ELEMENTS, math.ceil(cut.axial_depth_mm / _RESPONSE_STEP_MM))))
     engaged = _map(cut, edges, rows)
-    spindle = (np.arange(rows) + 0.5) * (2.0 * math.pi / rows)
+    spindle: FloatArray = np.asarray((np.arange(rows) + 0.5) * (2.0 * math.pi / rows), dtype=np.float64)
     feed, out = np.array([1.0, 0.0, 0.0]), np.empty((rows, 3, len(NAMES)))
     tolerance = Tolerance.for_pitch(_RESPONSE_STEP_MM)
     for k in range(len(NAMES)):
@@ -107,8 +114,8 @@ def response(cut: StraightPass, rows: int = ROWS) -> FloatArray:
 
 def unit_coefficients(index: int) -> CuttingCoefficients:
     """One coefficient 1, the others 0."""
-    values = dict.fromkeys(NAMES, 0.0) | {NAMES[index]: 1.0}
-    return CuttingCoefficients(**values, source="unit")
+    ktc, kte, krc, kre, kac, kae = np.eye(len(NAMES))[index].tolist()
+    return CuttingCoefficients(Ktc=ktc, Kte=kte, Krc=krc, Kre=kre, Kac=kac, Kae=kae, source="unit")
 
 
 def _edges(cut: StraightPass, count: int) -> CuttingEdges:

@@ -1,8 +1,8 @@
 """Coefficients from waveforms, with phases and runout as unknowns beside them.
 
 The forces are linear in the coefficients at given phases and runout, so these alone are searched, and the best
-coefficients follow from linear least squares at each trial (variable projection; Golub and Pereyra, 1973). Waveforms are
-compared by their harmonics, which is the same as sample by sample over whole revolutions.
+coefficients follow from linear least squares at each trial (variable projection; Golub and Pereyra, 1973). Waveforms
+are compared by their harmonics, which is the same as sample by sample over whole revolutions.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import optimize
 
 from twin.arrays import FloatArray
-from twin.identify.estimate import Estimate, fit_linear, fixed_values, from_covariance, quantile
+from twin.identify.estimate import Estimate, fit_linear, from_covariance, quantile
 from twin.identify.harmonics import ComplexArray
 from twin.identify.means import START
 from twin.identify.measure import Measured
@@ -41,7 +41,7 @@ class Waveforms:
 
     Attributes:
         angle_rad: shape (cuts,), phase where it is given, NaN where it is to be found.
-        fixed: shape (6,), see `fixed_values`.
+        fixed: shape (6,), see `twin.identify.estimate.fixed_values`.
         sector_rad: directions of runout that can be told apart where no phase is given: one pitch of even teeth, for
             any tooth may be called the first; else a full turn.
     """
@@ -54,13 +54,13 @@ class Waveforms:
 
     def values(self) -> FloatArray:
         """Shape (m,), the measured waveforms."""
-        return np.concatenate([_real(_harmonics(m)[:, m.axes]) for m in self.measured])
+        return np.concatenate([_real(measured_harmonics(m)[:, m.axes]) for m in self.measured])
 
     def design(self, phases: FloatArray, runout_mm: FloatArray | None) -> FloatArray:
         """Shape (m, 6), the waveforms for unit coefficients."""
         return np.concatenate(
             [
-                _real(_turned(model.harmonics(len(_harmonics(m)) - 1, runout_mm)[:, m.axes], phase))
+                _real(_turned(model.harmonics(len(measured_harmonics(m)) - 1, runout_mm)[:, m.axes], phase))
                 for model, m, phase in zip(self.models, self.measured, phases, strict=True)
             ]
         )
@@ -69,7 +69,7 @@ class Waveforms:
         """Shape (m, cuts), change of the fitted waveforms with each phase."""
         columns = []
         for model, m, phase in zip(self.models, self.measured, phases, strict=True):
-            c = _turned(model.harmonics(len(_harmonics(m)) - 1, runout_mm)[:, m.axes], phase) @ k
+            c = _turned(model.harmonics(len(measured_harmonics(m)) - 1, runout_mm)[:, m.axes], phase) @ k
             columns.append(_real(c * (1j * np.arange(len(c)))[:, None]))
         out = np.zeros((sum(map(len, columns)), len(columns)))
         first = 0
@@ -84,6 +84,19 @@ class Waveforms:
         for model, m, given in zip(self.models, self.measured, self.angle_rad, strict=True):
             found.append(float(given) if np.isfinite(given) else _best_phase(model, m, k, runout_mm))
         return np.array(found)
+
+    def phase(self, k: FloatArray, runout_mm: FloatArray | None) -> float:
+        """The phase of the only cut at which it fits best with given coefficients."""
+        start = self.best_phases(k, runout_mm)
+        if np.isfinite(self.angle_rad[0]):
+            return float(start[0])
+        values, width = self.values(), 2.0 * math.pi / _PHASE_GRID
+
+        def cost(phase: float) -> float:
+            return float(np.sum((self.design(np.array([phase]), runout_mm) @ k - values) ** 2))
+
+        bounds = (float(start[0]) - width, float(start[0]) + width)
+        return float(optimize.minimize_scalar(cost, bounds=bounds, method="bounded").x)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,7 +131,8 @@ def fit_waveforms(cuts: Waveforms, guesses: Sequence[FloatArray], *, runout: boo
     return search.told(found)
 
 
-def _harmonics(measured: Measured) -> ComplexArray:
+def measured_harmonics(measured: Measured) -> ComplexArray:
+    """Shape (count + 1, 3), of a cut that has a waveform."""
     assert measured.harmonics is not None
     return measured.harmonics
 
@@ -137,7 +151,7 @@ def _turned(c: ComplexArray, phase_rad: float) -> ComplexArray:
 
 def _best_phase(model: Model, measured: Measured, k: FloatArray, runout_mm: FloatArray | None) -> float:
     """The phase on a grid with the largest correlation of measured and fitted waveform."""
-    c = _harmonics(measured)[:, measured.axes]
+    c = measured_harmonics(measured)[:, measured.axes]
     fitted = model.harmonics(len(c) - 1, runout_mm)[:, measured.axes] @ k
     cross = (np.conj(c) * fitted).sum(axis=1)[1:]
     phases = np.arange(_PHASE_GRID) * (2.0 * math.pi / _PHASE_GRID)
@@ -210,9 +224,11 @@ class _Search:
         """The trial at the bottom of the valley that it lies in."""
         if len(trial) == 0:
             return trial
-        found = optimize.least_squares(
-            lambda x: self.solve(x)[1], trial, jac=self.slopes, ftol=_PRECISION, xtol=_PRECISION, gtol=_PRECISION
-        )
+
+        def left(x: FloatArray) -> FloatArray:
+            return self.solve(x)[1]
+
+        found = optimize.least_squares(left, trial, jac=self.slopes, ftol=_PRECISION, xtol=_PRECISION, gtol=_PRECISION)
         return np.asarray(found.x)
 
     def told(self, trial: FloatArray) -> WaveformFit:
@@ -231,9 +247,7 @@ class _Search:
         full, found = np.zeros((len(NAMES), len(NAMES))), np.flatnonzero(~given)
         full[np.ix_(found, found)] = covariance[: len(found), : len(found)]
         full[~plain.determined, :] = full[:, ~plain.determined] = math.nan
-        estimate = from_covariance(
-            plain.values, full, given, dof, plain.condition, plain.rank, None, float(dof)
-        )
+        estimate = from_covariance(plain.values, full, given, dof, plain.condition, plain.rank, None, float(dof))
         phases, runout_mm = self._reduced(phases, runout_mm)
         return WaveformFit(estimate, phases, runout_mm, _runout(runout_mm, covariance, dof), self.evaluations)
 
@@ -288,6 +302,3 @@ def _runout(runout_mm: FloatArray | None, covariance: FloatArray, dof: int) -> R
         angle_rad=math.atan2(runout_mm[1], runout_mm[0]) % (2.0 * math.pi),
         half_width_mm=(float(half[0]), float(half[1])),
     )
-
-
-__all__ = ["WaveformFit", "Waveforms", "fit_waveforms", "fixed_values"]

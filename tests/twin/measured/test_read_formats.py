@@ -61,7 +61,15 @@ def test_a_run_is_a_log(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("file", "data"),
-    [("a.tdms", b"TDSm" + b"\x00" * 10), ("a.h5", b"\x89HDF\r\n\x1a\n" + b"\x00" * 90), ("a.mat", b"MATLAB 5.0 nonsense"), ("a.parquet", b"PAR1abc"), ("a.mcap", b"\x89MCAP0\r\nabc"), ("a.xlsx", b"PK\x03\x04abc"), ("a.csv", b"no numbers")],
+    [
+        ("a.tdms", b"TDSm" + b"\x00" * 10),
+        ("a.h5", b"\x89HDF\r\n\x1a\n" + b"\x00" * 90),
+        ("a.mat", b"MATLAB 5.0 nonsense"),
+        ("a.parquet", b"PAR1abc"),
+        ("a.mcap", b"\x89MCAP0\r\nabc"),
+        ("a.xlsx", b"PK\x03\x04abc"),
+        ("a.csv", b"no numbers"),
+    ],
 )
 def test_damaged_files_are_refused_by_name(file: str, data: bytes, tmp_path: Path) -> None:
     (tmp_path / file).write_bytes(data)
