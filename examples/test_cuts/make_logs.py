@@ -61,7 +61,9 @@ def edges(height_mm: float) -> Edges:
     kappa = np.minimum(s / RADIUS_MM, 0.5 * np.pi)
     z = np.where(s < arc, RADIUS_MM * (1.0 - np.cos(kappa)), RADIUS_MM + s - arc)
     lag = z * np.tan(np.radians(HELIX_DEG)) / RADIUS_MM
-    return Edges(z, RADIUS_MM * np.sin(kappa), np.sin(kappa), np.cos(kappa), np.full(len(s), (arc + wall) / len(s)), lag)
+    return Edges(
+        z, RADIUS_MM * np.sin(kappa), np.sin(kappa), np.cos(kappa), np.full(len(s), (arc + wall) / len(s)), lag
+    )
 
 
 def forces_on_tool(
@@ -98,7 +100,9 @@ def share(depth: np.ndarray, extent: np.ndarray) -> np.ndarray:
     return np.clip(0.5 + depth / np.maximum(np.abs(extent), 1e-9), 0.0, 1.0)
 
 
-def log(path: Path, rng: np.random.Generator, rate_hz: float, seconds: float, tool_force: np.ndarray, what: str) -> None:
+def log(
+    path: Path, rng: np.random.Generator, rate_hz: float, seconds: float, tool_force: np.ndarray, what: str
+) -> None:
     """Write what the dynamometer under the part would have said, its x axis along the machine's y, its y along -x."""
     t = np.arange(len(tool_force)) / rate_hz
     on_workpiece = -tool_force

@@ -19,6 +19,9 @@ _THRESHOLD = 0.15
 _CLEAR_REVOLUTIONS = 3
 #: Least revolutions of a stretch of air that is used.
 _LEAST_AIR = 5
+#: Contact is what varies more than air by so many standard deviations, or by this part of the contrast.
+_SCATTER = 4.0
+_FAINT = 0.01
 #: How much farther than its reach the tool goes before the cut is called steady.
 _ENTRY = 1.05
 
@@ -56,8 +59,9 @@ def find_cut(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> Found
     cutting = activity > low + _THRESHOLD * (high - low)
     first, last = _longest(_closed(cutting))
     cut = (float(edges[first]), float(edges[last + 1]))
+    touch, leave = _contact(activity, first, last, float(high - low), cutting)
     clear = _CLEAR_REVOLUTIONS * revolution_s
-    spans = ((whole[0], cut[0] - clear), (cut[1] + clear, whole[1]))
+    spans = ((whole[0], float(edges[touch]) - clear), (float(edges[leave + 1]) + clear, whole[1]))
     air = tuple(s for s in spans if s[1] - s[0] >= _LEAST_AIR * revolution_s)
     return Found(cut, air, first > 0, last < len(activity) - 1)
 
@@ -89,6 +93,21 @@ def _activity(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> tupl
     mean = np.diff(sums[at], axis=0) / samples[:, None]
     variance = np.diff(squares[at], axis=0) / samples[:, None] - mean**2
     return edges, np.sqrt(np.maximum(variance, 0.0).sum(axis=1))
+
+
+def _contact(
+    activity: FloatArray, first: int, last: int, contrast: float, cutting: np.ndarray[tuple[int], np.dtype[np.bool_]]
+) -> tuple[int, int]:
+    """First and last block with any contact about a cut: its beginning may be weaker than what is called cut."""
+    air = activity[~cutting]
+    middle = float(np.median(air))
+    scatter = 1.4826 * float(np.median(np.abs(air - middle)))
+    limit = middle + max(_SCATTER * scatter, _FAINT * contrast)
+    while first > 0 and activity[first - 1] > limit:
+        first -= 1
+    while last < len(activity) - 1 and activity[last + 1] > limit:
+        last += 1
+    return first, last
 
 
 def _closed(cutting: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

@@ -28,8 +28,8 @@ NAMES = ("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae")
 #: Spindle angles of a response: half a degree apart, the first a quarter of a degree after 0.
 ROWS = 720
 _MEAN_ELEMENTS = 4000
-_RESPONSE_STEP_MM = 0.025
-_MOST_ELEMENTS = 400
+_RESPONSE_STEP_MM = 0.04
+_MOST_ELEMENTS = 250
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -152,14 +152,16 @@ def _angles(cut: StraightPass, radius_mm: FloatArray) -> tuple[FloatArray, Float
 
 
 def _map(cut: StraightPass, edges: CuttingEdges, rows: int) -> EngagementMap:
-    """The exact engagement as a map of the simulator's kind; at the gate n.f = 0 the chip itself ends it."""
+    """The exact engagement as a map of the simulator's kind; at the gate n.f = 0 the chip itself ends it.
+
+    The share of a row is the part of the step about it in which the element is engaged, so that elements come in and
+    go out over a step, not at a stroke, and their number leaves no steps in the force.
+    """
     step = 2.0 * math.pi / rows
     low, high = _angles(cut, edges.radius_mm)
     beyond = 0.5 * math.pi + 1.01 * step
     low, high = np.where(low <= -0.5 * math.pi, -beyond, low), np.where(high >= 0.5 * math.pi, beyond, high)
     theta = np.arange(rows) * step
     theta = np.where(theta > math.pi, theta - 2.0 * math.pi, theta)[:, None]
-    inside = (theta > low) & (theta < high)
-    border = np.where(inside, high, low)
-    turn = np.where(inside != np.roll(inside, -1, axis=0), np.clip((border - theta) / step, 0.0, 1.0), 0.5)
-    return EngagementMap(inside.astype(np.float64), turn, NO_ENGAGEMENT)
+    share = np.clip(0.5 + np.minimum(theta - low, high - theta) / step, 0.0, 1.0)
+    return EngagementMap(share, np.full(share.shape, 0.5), NO_ENGAGEMENT)
