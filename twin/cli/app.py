@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from twin.cli.compare import compare
 from twin.cli.export import export
 from twin.cli.identify import identify
 from twin.cli.info import info
@@ -25,7 +26,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, mesh, identify, schema):
+for command in (replay, view, info, export, compare, identify, mesh, schema):
     app.command()(command)
 
 

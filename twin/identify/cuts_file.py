@@ -45,6 +45,7 @@ class Shared(Table):
     rate_hz: float | None = Field(default=None, gt=0.0, description="sampling rate where the log does not say it, Hz")
     columns: Texts | None = Field(default=None, description="names of the log's columns in place of its header")
     delimiter: str | None = Field(default=None, description="delimiter of a text log; found if not given")
+    group: str | None = Field(default=None, description="group, variable or topic of the forces in the log")
     decimal: Literal[".", ","] | None = Field(
         default=None, description="decimal mark of a text log; found if not given"
     )

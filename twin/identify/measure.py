@@ -93,7 +93,9 @@ def log_of(cut: Cut) -> ForceLog:
         MeasuredError: see `twin.measured.read_log` and `twin.measured.force_log`.
     """
     assert cut.log is not None
-    raw = read_log(cut.log, rate_hz=cut.rate_hz, columns=cut.columns, delimiter=cut.delimiter, decimal=cut.decimal)
+    raw = read_log(
+        cut.log, rate_hz=cut.rate_hz, columns=cut.columns, delimiter=cut.delimiter, decimal=cut.decimal, group=cut.group
+    )
     axis_map = AxisMap.parse(cut.map) if cut.map is not None else None
     return force_log(raw, axis_map, force_on=cut.force_on, unit=cut.unit)
 

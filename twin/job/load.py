@@ -18,7 +18,10 @@ from twin.job.problems import Location, Problem, problems_of
 from twin.job.rules import RULES
 from twin.job.toml_text import toml_text
 
-_FILES: tuple[tuple[str, str], ...] = (("program", "file"), ("stock", "stl"), ("output", "mcap"), ("output", "rrd"))
+_FILES: tuple[tuple[str, str], ...] = (
+    *(("program", "file"), ("stock", "stl"), ("output", "mcap"), ("output", "rrd")),
+    ("measured", "file"),
+)
 _TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 

@@ -18,6 +18,21 @@ AXES = ("x", "y", "z")
 GAP_INTERVALS = 1.75
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Correction:
+    """Something that was done to a log on purpose, to be printed and stored.
+
+    Attributes:
+        kind: ``offset``, ``drift``, ``resample``, ``lowpass``, ``notch``, ``lag``, ``phase``.
+        text: for people, one line.
+        values: the numbers, units in the names.
+    """
+
+    kind: str
+    text: str
+    values: dict[str, float | str | list[float]]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Channel:
     """One column of a file.
@@ -77,7 +92,8 @@ class ForceLog:
         spindle_angle_rad: shape (n,), continuous, or None.
         trigger_s: moments of a once-per-revolution pulse, or None.
         gaps: where samples are missing.
-        notes: what was done to the log so far, one line each.
+        notes: what reading the log took, one line each.
+        corrections: what was done to it afterwards, in order.
     """
 
     t_s: FloatArray
@@ -91,6 +107,7 @@ class ForceLog:
     trigger_s: FloatArray | None = None
     gaps: tuple[Gap, ...] = ()
     notes: tuple[str, ...] = ()
+    corrections: tuple[Correction, ...] = ()
 
     @property
     def duration_s(self) -> float:

@@ -29,7 +29,7 @@ def test_terms(text: str, axis: str, terms: object) -> None:
 
 @pytest.mark.parametrize("text", ["", "x", "w=Fx", "x=", "x=-", "x=Fx,x=Fy", "x=Fx,y"])
 def test_what_is_no_map(text: str) -> None:
-    with pytest.raises(MeasuredError, match="expected e.g. x=-Fy,y=-Fx,z=Fz|no column"):
+    with pytest.raises(MeasuredError, match=r"expected e.g. x=-Fy,y=-Fx,z=Fz|no column"):
         AxisMap.parse(text).terms(aliases(NAMES))
 
 
