@@ -95,6 +95,7 @@ def fit_linear(design: FloatArray, values: FloatArray, errors: FloatArray | None
         fixed: shape (6,), see `fixed_values`.
     """
     given = np.isfinite(fixed)
+    design = _without_rounding(design)
     a, y = design[:, ~given], values - design[:, given] @ fixed[given]
     rank, condition, free = _rank(a)
     dof = len(y) - rank
@@ -105,6 +106,16 @@ def fit_linear(design: FloatArray, values: FloatArray, errors: FloatArray | None
     spread = _spread(a, y, errors, dof)
     k, covariance, _ = _solve(a, y, np.hypot(errors, spread))
     return _estimate(fixed, k, covariance, free, dof, condition, rank, spread, dof if dof > 0 else math.inf)
+
+
+def _without_rounding(design: FloatArray) -> FloatArray:
+    """The equations with columns that are rounding, beside others of their kind, set to zero."""
+    out = design.copy()
+    length = np.linalg.norm(out, axis=0)
+    for kind in (slice(0, None, 2), slice(1, None, 2)):
+        rounding = length[kind] < RANK_TOLERANCE * length[kind].max(initial=0.0)
+        out[:, kind] = np.where(rounding, 0.0, out[:, kind])
+    return out
 
 
 def _rank(a: FloatArray) -> tuple[int, float, NDArray[np.bool_]]:

@@ -159,9 +159,11 @@ def _map(cut: StraightPass, edges: CuttingEdges, rows: int) -> EngagementMap:
     """
     step = 2.0 * math.pi / rows
     low, high = _angles(cut, edges.radius_mm)
+    never = low >= high
     beyond = 0.5 * math.pi + 1.01 * step
     low, high = np.where(low <= -0.5 * math.pi, -beyond, low), np.where(high >= 0.5 * math.pi, beyond, high)
     theta = np.arange(rows) * step
     theta = np.where(theta > math.pi, theta - 2.0 * math.pi, theta)[:, None]
     share = np.clip(0.5 + np.minimum(theta - low, high - theta) / step, 0.0, 1.0)
+    share[:, never] = 0.0
     return EngagementMap(share, np.full(share.shape, 0.5), NO_ENGAGEMENT)
