@@ -16,7 +16,7 @@ from twin.identify.load import cuts_from_dict
 
 #: The force on the part, the dynamometer's x along the machine's y, its y along -x, z up.
 QUARTER_TURN = {"map": "x=-Fy,y=Fx,z=Fz", "force_on": "workpiece"}
-AIR_S, CUT_S = 0.6, 1.5
+AIR_S, CUT_S = 0.8, 1.5
 
 
 def write_log(path: Path, t_s: FloatArray, on_tool_n: FloatArray) -> None:

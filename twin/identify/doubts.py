@@ -9,6 +9,7 @@ import numpy as np
 
 from twin.identify.cuts_file import Cuts
 from twin.identify.estimate import Estimate
+from twin.identify.measure import SPEED_DOUBT
 from twin.identify.result import CutResult
 from twin.identify.straight import NAMES
 
@@ -59,7 +60,7 @@ def _logs(cuts: Cuts, results: Sequence[CutResult]) -> Iterator[str]:
                 f"{r.name}: {r.measured.samples_per_rev:.2f} samples a revolution, expected more than "
                 f"{_LEAST_SAMPLES * teeth:g} (twice the tooth-passing frequency): its mean may be off"
             )
-        yield from (f"{r.name}: {note}" for note in r.measured.notes if "no spindle speed found" in note)
+        yield from (f"{r.name}: {note}" for note in r.measured.notes if note.startswith(SPEED_DOUBT))
 
 
 def _runout(cuts: Cuts, results: Sequence[CutResult], found: bool) -> Iterator[str]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -21,12 +21,15 @@ from twin.identify.steady import Found, Span, steady_part
 from twin.measured import AxisMap, ForceLog, force_log, read_log
 from twin.measured.axes import aliases
 from twin.measured.log import AXES
+from twin.measured.spindle import spindle_speed
 
 #: Multiples of the tooth-passing frequency in a waveform, if the file does not say.
 _ORDERS = 12
 _MOST_HARMONICS = 60
 #: Highest multiple, in parts of the samples of one revolution; half of them is the Nyquist limit.
 _BELOW_NYQUIST = 0.4
+#: How notes of a speed that may be wrong begin.
+SPEED_DOUBT = "spindle speed in doubt"
 #: Parts of the window that the mean's standard error is found from.
 _BATCHES = 20
 
@@ -132,9 +135,9 @@ def measure(cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, tee
     t = log.t_s[inside]
     f = log.force_n[inside] - zero.at(t)
     samples = log.rate_hz * 60.0 / rpm
-    if fit.speed == "found" and samples > 2.5 * teeth:
-        rpm, note = _speed(t, f, rpm, teeth)
-        notes.append(note)
+    if samples > 2.5 * teeth:
+        rpm, told = _speed(replace(log, t_s=t, force_n=f, spindle_angle_rad=None, trigger_s=None), rpm, teeth, fit)
+        notes += told
     mean, error, used = _mean(t, f, 60.0 / rpm)
     measured = np.array([axis in log.axes for axis in AXES])
     count = harmonic_count(fit, teeth, rpm, samples)
@@ -180,15 +183,17 @@ def _inside(log: ForceLog, window: Span, rpm: float) -> NDArray[np.bool_]:
     return np.asarray((log.t_s >= window[0]) & (log.t_s <= window[1]))
 
 
-def _speed(t_s: FloatArray, force_n: FloatArray, rpm: float, teeth: int) -> tuple[float, str]:
-    """The speed of the waveform; the given one where none near it stands out."""
-    found = find_speed(t_s, force_n, rpm, teeth)
+def _speed(log: ForceLog, rpm: float, teeth: int, fit: Fit) -> tuple[float, list[str]]:
+    """The speed of the waveform in a window; the given one where that is asked, or where none near it stands out."""
+    seen = spindle_speed(log, teeth, rpm)
+    if seen is not None and abs(seen.rpm / rpm - 1.0) > SPEED_RANGE:
+        return rpm, [f"{SPEED_DOUBT}: the force repeats as at {seen.rpm:.0f} rpm, {rpm:g} rpm is given and taken"]
+    if fit.speed == "given":
+        return rpm, []
+    found = find_speed(log.t_s, log.force_n, rpm, teeth)
     if abs(found / rpm - 1.0) > 0.98 * SPEED_RANGE:
-        return (
-            rpm,
-            f"no spindle speed found within {100 * SPEED_RANGE:g} % of {rpm:g} rpm: taken as given; is it right?",
-        )
-    return found, f"spindle speed {found:.2f} rpm found, {rpm:g} given"
+        return rpm, [f"{SPEED_DOUBT}: none found within {100 * SPEED_RANGE:g} % of {rpm:g} rpm, which is taken"]
+    return found, [f"spindle speed {found:.2f} rpm found, {rpm:g} given"]
 
 
 def _mean(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> tuple[FloatArray, FloatArray, Span]:

@@ -30,6 +30,8 @@ _ALTERNATIONS = 6
 _SIZES = (0.15, 0.4)
 _DIRECTIONS = 6
 _PRECISION = 1e-10
+#: A harmonic that alone decides an unknown has nothing left to tell its noise by.
+_LEAST_FREE = 1e-6
 _PHASE_STEP_RAD = 1e-5
 #: Step of slopes over runout, in feeds per tooth; chips end at places that move with it.
 _RUNOUT_STEP = 1e-3
@@ -283,14 +285,13 @@ def _solved(design: FloatArray, values: FloatArray, fixed: FloatArray) -> FloatA
 
 
 def _robust_covariance(slopes: FloatArray, left: FloatArray) -> NDArray[np.float64]:
-    """Covariance that does not suppose equal noise at all harmonics (White, 1980, with the factor m / (m - n))."""
-    m, n = slopes.shape
+    """Covariance that does not suppose equal noise at all harmonics (HC3 of MacKinnon and White, 1985)."""
     length = np.linalg.norm(slopes, axis=0)
     length = np.where(length > 0.0, length, 1.0)
     inverse = np.linalg.pinv(slopes / length, rcond=1e-10)
-    spread = inverse * left[None, :]
-    factor = m / (m - n) if m > n else math.nan
-    return np.asarray(factor * (spread @ spread.T) / np.outer(length, length))
+    leverage = np.sum((slopes / length) * inverse.T, axis=1)
+    spread = inverse * (left / np.maximum(1.0 - leverage, _LEAST_FREE))[None, :]
+    return np.asarray((spread @ spread.T) / np.outer(length, length))
 
 
 def _runout(runout_mm: FloatArray | None, covariance: FloatArray, dof: int) -> Runout | None:
