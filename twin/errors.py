@@ -46,3 +46,11 @@ class MeasuredError(TwinError):
 
 class CompareError(TwinError):
     """A run and a log that cannot be compared."""
+
+
+class CutsError(JobError):
+    """A file of test cuts that cannot be used; ``problems`` holds every mistake found, one line each."""
+
+
+class IdentifyError(TwinError):
+    """Test cuts that no coefficients can be found from."""

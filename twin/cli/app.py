@@ -8,6 +8,7 @@ import typer
 
 from twin.cli.compare import compare
 from twin.cli.export import export
+from twin.cli.identify import identify
 from twin.cli.info import info
 from twin.cli.mesh import mesh
 from twin.cli.replay import replay
@@ -25,7 +26,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, compare, mesh, schema):
+for command in (replay, view, info, export, compare, identify, mesh, schema):
     app.command()(command)
 
 

@@ -119,6 +119,12 @@ class Cutting(Table):
     convention: Literal["meridian"] = Field(
         default="meridian", description="length that the edge terms count: along the tool's meridian"
     )
+    standard_errors: Annotated[tuple[float, float, float, float, float, float], Strict(False)] | None = Field(
+        default=None, description="standard errors of Ktc, Kte, Krc, Kre, Kac, Kae; kept with the run, not used"
+    )
+    correlation: Annotated[tuple[tuple[float, ...], ...], Strict(False)] | None = Field(
+        default=None, description="correlation of these errors, six rows of six; kept with the run, not used"
+    )
 
 
 class Tool(Table):
