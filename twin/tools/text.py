@@ -1,0 +1,61 @@
+"""Tools as words on a command line: ``ball 8``, ``flat 10``, ``bull 12 r2``."""
+
+from __future__ import annotations
+
+import re
+
+from twin.errors import ToolError
+from twin.tools.shape import ToolKind, ToolShape, tool_shape
+
+_EXPECTED = 'expected "ball D", "flat D", "bull D rC" or "taper D aDEG [rC]", lengths in mm, as in "bull 12 r2"'
+_KINDS: dict[str, ToolKind] = {"ball": "ball", "flat": "flat", "bull": "bull", "taper": "taper"}
+_NEEDS: dict[str, tuple[set[str], set[str]]] = {
+    "ball": (set(), {"l"}),
+    "flat": (set(), {"l"}),
+    "bull": ({"r"}, {"l"}),
+    "taper": ({"a"}, {"r", "l"}),
+}
+_NUMBER = r"(?:\d+\.?\d*|\.\d+)"
+_TEXT = re.compile(rf"([a-z]+)\s+d?({_NUMBER})((?:\s+[a-z]{_NUMBER})*)", re.IGNORECASE)
+#: Flutes as long as this many diameters, unless told.
+_FLUTES = 3.0
+
+
+def parse_tool(text: str) -> ToolShape:
+    """The tool that words describe.
+
+    Kind, diameter, then letters with values: ``r`` corner radius, ``a`` half angle of a taper in degrees, ``l`` length of
+    the flutes (three diameters where it is not told).
+
+    Raises:
+        ToolError: other words, a letter that the kind does not have or lacks, or a shape that cannot be.
+    """
+    match = _TEXT.fullmatch(text.strip())
+    kind = match[1].lower() if match else ""
+    if match is None or kind not in _KINDS:
+        raise ToolError(f'tool "{text}"; {_EXPECTED}')
+    words = [(w[0].lower(), float(w[1:])) for w in match[3].split()]
+    values = dict(words)
+    needed, allowed = _NEEDS[kind]
+    if len(values) != len(words) or not needed <= set(values) <= needed | allowed:
+        raise ToolError(f'tool "{text}"; {_EXPECTED}')
+    diameter = float(match[2])
+    try:
+        return tool_shape(
+            _KINDS[kind], diameter, values.get("l", _FLUTES * diameter), values.get("r", 0.0), values.get("a", 0.0)
+        )
+    except ToolError as error:
+        raise ToolError(f'tool "{text}": {error}') from error
+
+
+def tool_text(shape: ToolShape) -> str:
+    """A tool in the words that `parse_tool` reads, without the length of its flutes."""
+    diameter = f"{2.0 * shape.nominal_radius_mm:g}"
+    if shape.taper_rad > 0.0:
+        from math import degrees
+
+        corner = f" r{shape.corner_mm:g}" if shape.corner_mm else ""
+        return f"taper {diameter} a{degrees(shape.taper_rad):g}{corner}"
+    if shape.corner_mm == 0.0:
+        return f"flat {diameter}"
+    return f"ball {diameter}" if shape.disc_mm == 0.0 else f"bull {diameter} r{shape.corner_mm:g}"
