@@ -185,12 +185,12 @@ def _down(moves: Sequence[Move], before: Pass, one: Pass, options: LinkOptions, 
     if np.any(moves[-1].end_mm != end) or np.linalg.norm(start - end) > options.stay_down_mm:
         return None
     if np.all(start == end):
-        return start.reshape(1, 3)
+        here: FloatArray = one.points_mm[:1]
+        return here
     points = way.between(end, start)
     if points is None or np.linalg.norm(np.diff(points, axis=0), axis=1).sum() > options.stay_down_mm:
         return None
-    found: FloatArray = points
-    return found
+    return points
 
 
 def _over(moves: Sequence[Move], begin: FloatArray, options: LinkOptions, way: Way | None) -> tuple[Move, ...]:
