@@ -1,0 +1,1 @@
+"""Tool paths: where a tool may go over a surface, and what it leaves."""
