@@ -54,6 +54,8 @@ class ScanOptions:
         climb: whether rows run so that the uncut material, towards higher rows, is on their right; with zigzag the
             first row.
         layer: number of the layer, for linking.
+        approach_mm: places along the row, before its low and behind its high end, from which the tool may come
+            through nothing but air; None for an end without one.
     """
 
     low_mm: float
@@ -63,6 +65,7 @@ class ScanOptions:
     zigzag: bool = False
     climb: bool = True
     layer: int = 0
+    approach_mm: tuple[float | None, float | None] = (None, None)
 
 
 def row_positions(low_mm: float, high_mm: float, stepover_mm: float) -> FloatArray:
@@ -81,8 +84,19 @@ def scan_passes(rows: Rows, options: ScanOptions) -> tuple[Pass, ...]:
         runs = below(_in_space(line, at, rows), options.top_mm)
         if forward == (options.zigzag and number % 2 == 1):
             runs = [run[::-1] for run in reversed(runs)]
-        passes += [Pass(points_mm=run, top_mm=options.top_mm, layer=options.layer) for run in runs]
+        passes += [_pass(run, rows, options) for run in runs]
     return tuple(passes)
+
+
+def _pass(run: FloatArray, rows: Rows, options: ScanOptions) -> Pass:
+    """A run, approached from outside where it begins at an end of its row that allows it."""
+    axis = 0 if rows.direction == "x" else 1
+    approach: FloatArray | None = None
+    for end, place in zip((options.low_mm, options.high_mm), options.approach_mm, strict=True):
+        if place is not None and run[0, axis] == end:
+            approach = run[0].copy()
+            approach[axis] = place
+    return Pass(points_mm=run, top_mm=options.top_mm, layer=options.layer, approach_mm=approach)
 
 
 def _in_space(line: FloatArray, at_mm: float, rows: Rows) -> FloatArray:
