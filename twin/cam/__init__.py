@@ -1,1 +1,1 @@
-"""Computer-aided manufacturing on slices: offsets, tool paths, what a tool cannot reach."""
+"""Computer-aided manufacturing: where a tool may go, tool paths from slices, NC programs from them."""

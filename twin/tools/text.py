@@ -16,16 +16,19 @@ _NEEDS: dict[str, tuple[set[str], set[str]]] = {
     "taper": ({"a"}, {"r", "l"}),
 }
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)"
-_TEXT = re.compile(rf"([a-z]+)\s+d?({_NUMBER})((?:\s+[a-z]{_NUMBER})*)", re.IGNORECASE)
+_TEXT = re.compile(rf"([a-z]+)\s+d?({_NUMBER})((?:\s+(?:rc|[a-z]){_NUMBER}|\s+{_NUMBER}deg)*)", re.IGNORECASE)
 #: Flutes as long as this many diameters, unless told.
 _FLUTES = 3.0
 
 
-def parse_tool(text: str) -> ToolShape:
+def parse_tool(text: str, flute_length_mm: float | None = None) -> ToolShape:
     """The tool that words describe.
 
-    Kind, diameter, then letters with values: ``r`` corner radius, ``a`` half angle of a taper in degrees, ``l`` length of
-    the flutes (three diameters where it is not told).
+    Kind, diameter, then letters with values: ``r`` or ``rc`` corner radius, ``a`` half angle of a taper in degrees
+    (or ``5deg``), ``l`` length of the flutes.
+
+    Args:
+        flute_length_mm: length of the flutes where the text does not tell it; three diameters if not given.
 
     Raises:
         ToolError: other words, a letter that the kind does not have or lacks, or a shape that cannot be.
@@ -34,18 +37,24 @@ def parse_tool(text: str) -> ToolShape:
     kind = match[1].lower() if match else ""
     if match is None or kind not in _KINDS:
         raise ToolError(f'tool "{text}"; {_EXPECTED}')
-    words = [(w[0].lower(), float(w[1:])) for w in match[3].split()]
+    words = [_word(w.lower()) for w in match[3].split()]
     values = dict(words)
     needed, allowed = _NEEDS[kind]
     if len(values) != len(words) or not needed <= set(values) <= needed | allowed:
         raise ToolError(f'tool "{text}"; {_EXPECTED}')
     diameter = float(match[2])
+    flutes = values.get("l", _FLUTES * diameter if flute_length_mm is None else flute_length_mm)
     try:
-        return tool_shape(
-            _KINDS[kind], diameter, values.get("l", _FLUTES * diameter), values.get("r", 0.0), values.get("a", 0.0)
-        )
+        return tool_shape(_KINDS[kind], diameter, flutes, values.get("r", 0.0), values.get("a", 0.0))
     except ToolError as error:
         raise ToolError(f'tool "{text}": {error}') from error
+
+
+def _word(word: str) -> tuple[str, float]:
+    """A letter and its value: ``r2``, ``rc2``, ``a5``, ``5deg``."""
+    if word.endswith("deg"):
+        return "a", float(word[:-3])
+    return word[0], float(word.removeprefix("rc") if word.startswith("rc") else word[1:])
 
 
 def tool_text(shape: ToolShape) -> str:
