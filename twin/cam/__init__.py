@@ -1,1 +1,1 @@
-"""Tool paths: where a tool may go over a surface, and what it leaves."""
+"""Computer-aided manufacturing: where a tool may go, tool paths from slices, NC programs from them."""
