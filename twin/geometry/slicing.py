@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry import slicing_kernels as kernels
-from twin.geometry.clip import DECIMALS, union_nonzero
+from twin.geometry.clip import DECIMALS, LEAST_AREA_MM2, union_nonzero
 from twin.geometry.region import Region
 
 
@@ -77,8 +77,19 @@ def mesh_sections(
     rings = kernels.chain_rings(segments, begins, len(edges.ends), order)
     points = np.empty((len(segments), 2))
     kernels.edge_points(vertices_mm, edges.ends, axes, planes_mm, rings, order, segments, points)
-    points = np.round(points, DECIMALS) + 0.0
-    found: list[list[FloatArray]] = [[] for _ in planes_mm]
-    for plane, first, last in rings.tolist():
+    return _regions(points, rings, len(planes_mm))
+
+
+def _regions(points_mm: FloatArray, rings: NDArray[np.int64], planes: int) -> tuple[Region, ...]:
+    """Chained rings to regions; only where rings meet each other are they united."""
+    units = 10.0**DECIMALS
+    whole, kept = np.empty(points_mm.shape, dtype=np.int64), np.empty_like(rings)
+    kept = kept[: kernels.clean_rings(points_mm, rings, units, LEAST_AREA_MM2 * units**2, whole, kept)]
+    simple = np.empty(planes, dtype=np.bool_)
+    kernels.simple_planes(whole, kept, planes, simple)
+    points = whole / units
+    points.flags.writeable = False
+    found: list[list[FloatArray]] = [[] for _ in range(planes)]
+    for plane, first, last in kept.tolist():
         found[plane].append(points[first:last])
-    return tuple(union_nonzero(r) if r else Region() for r in found)
+    return tuple(Region(tuple(r)) if s else union_nonzero(r) for r, s in zip(found, simple.tolist(), strict=True))
