@@ -1,4 +1,4 @@
-"""Sections of a closed triangle mesh with parallel planes, chained to rings by shared edges; compiled.
+"""Triangles joined to a mesh, and sections of it with parallel planes, chained to rings by shared edges; compiled.
 
 A vertex on a plane counts as above it. So every triangle that reaches both sides has exactly one edge that goes up
 through the plane and one that goes down, whether or not vertices, edges or whole faces lie on it, and no tolerance
@@ -12,6 +12,90 @@ from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+
+
+@njit(cache=True, nogil=True)
+def weld(points: NDArray[np.int64], ids: NDArray[np.int64], first: NDArray[np.int64]) -> int:
+    """Give equal points equal numbers, in the order in which they come first.
+
+    Args:
+        points: shape (n, 3), whole units.
+        ids: shape (n,), filled.
+        first: shape (n,), filled with the row where each number comes first.
+
+    Returns:
+        Number of different points.
+    """
+    size = 16
+    while size < 2 * len(points):
+        size *= 2
+    table = np.full(size, -1, dtype=np.int64)
+    count = 0
+    for i in range(len(points)):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        mixed = (x * np.int64(73856093)) ^ (y * np.int64(19349663)) ^ (z * np.int64(83492791))
+        mixed = (mixed ^ (mixed >> np.int64(29))) * np.int64(668265261)
+        slot = (mixed ^ (mixed >> np.int64(17))) & np.int64(size - 1)
+        while True:
+            known = table[slot]
+            if known < 0:
+                table[slot] = count
+                first[count] = i
+                ids[i] = count
+                count += 1
+                break
+            j = first[known]
+            if points[j, 0] == x and points[j, 1] == y and points[j, 2] == z:
+                ids[i] = known
+                break
+            slot = (slot + 1) & np.int64(size - 1)
+    return count
+
+
+@njit(cache=True, nogil=True)
+def number_edges(
+    triangles: NDArray[np.int64], vertices: int, ends: NDArray[np.int64], ways: NDArray[np.int64], sides: NDArray[np.int64]
+) -> int:
+    """Number the edges of triangles, by the lower of their vertices.
+
+    Args:
+        triangles: shape (m, 3), no corner twice.
+        vertices: number of vertices.
+        ends: shape (3 m, 2), filled with the vertices of each edge, lower number first.
+        ways: shape (3 m, 2), filled: how many triangles run along it from lower to higher vertex, and back.
+        sides: shape (m, 3), filled: edge j of a triangle joins its corners j and j + 1.
+
+    Returns:
+        Number of edges.
+    """
+    begins = np.zeros(vertices + 1, dtype=np.int64)
+    for t in range(len(triangles)):
+        for j in range(3):
+            begins[min(triangles[t, j], triangles[t, (j + 1) % 3]) + 1] += 1
+    for v in range(vertices):
+        begins[v + 1] += begins[v]
+    held = np.zeros(vertices, dtype=np.int64)
+    found = np.empty(3 * len(triangles), dtype=np.int64)
+    count = 0
+    for t in range(len(triangles)):
+        for j in range(3):
+            a, b = triangles[t, j], triangles[t, (j + 1) % 3]
+            low, high = min(a, b), max(a, b)
+            edge = -1
+            for m in range(begins[low], begins[low] + held[low]):
+                if ends[found[m], 1] == high:
+                    edge = found[m]
+                    break
+            if edge < 0:
+                edge = count
+                count += 1
+                ends[edge, 0], ends[edge, 1] = low, high
+                ways[edge, 0], ways[edge, 1] = 0, 0
+                found[begins[low] + held[low]] = edge
+                held[low] += 1
+            ways[edge, 0 if a < b else 1] += 1
+            sides[t, j] = edge
+    return count
 
 
 @njit(cache=True, nogil=True)
