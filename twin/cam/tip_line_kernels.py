@@ -22,6 +22,10 @@ from twin.arrays import FloatArray
 _TABLE = 65
 #: How alike neighbouring curvatures must be, for heights between sections to be interpolated.
 _ALIKE = 4.0
+#: Sections asked within a cell: the one touched at an end, and those beside it.
+_ASKED = 5
+#: Part of a step by which pieces reach further, so that a tool that just touches a wall counts as touching it.
+_TIE = 1e-7
 #: Sections closer than this are taken for one, mm.
 _SAME_MM = 1e-7
 
@@ -143,12 +147,17 @@ def _section_row(
     if not round_end:
         _touch_table(d2, disc, corner, width, place, slope)
     rho2 = corner * corner - d2
+    low, high = start - _TIE * step, start + (n - 1 + _TIE) * step
     for i in range(len(segments)):
+        if segments[i, 2] < low - radius or segments[i, 0] > high + radius:
+            continue
         nu, nv = segments[i, 4], segments[i, 5]
         s = _touch(nu, nv, width, round_end, place, slope)
         left, right = segments[i, 0] + s, segments[i, 2] + s
-        first = max(0, math.ceil((left - start) / step))
-        last = min(n - 1, math.floor((right - start) / step))
+        if right < low or left > high:
+            continue
+        first = max(0, math.ceil((left - start) / step - _TIE))
+        last = min(n - 1, math.floor((right - start) / step + _TIE))
         if first > last:
             continue
         climb = -nu / nv
@@ -158,10 +167,14 @@ def _section_row(
             row[k] = max(row[k], height + climb * k)
     for i in range(len(corners)):
         u, v = corners[i, 0], corners[i, 1]
+        if u < low - radius or u > high + radius:
+            continue
         right = u + _touch(corners[i, 2], corners[i, 3], width, round_end, place, slope)
         left = u + _touch(corners[i, 4], corners[i, 5], width, round_end, place, slope)
-        first = max(0, math.ceil((left - start) / step))
-        last = min(n - 1, math.floor((right - start) / step))
+        if right < low or left > high:
+            continue
+        first = max(0, math.ceil((left - start) / step - _TIE))
+        last = min(n - 1, math.floor((right - start) / step + _TIE))
         if round_end:
             v -= corner
             for k in range(first, last + 1):
@@ -197,6 +210,29 @@ def _between(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
 
 
 @njit(cache=True, nogil=True)
+def _reach(positions: FloatArray, plane: float, radius: float) -> tuple[int, int]:
+    """First and one past the last section that a tool at a plane can touch."""
+    first = np.searchsorted(positions, plane - radius, side="right")
+    return first, np.searchsorted(positions, plane + radius, side="left")
+
+
+@njit(cache=True, nogil=True)
+def _highest(y: FloatArray, rows: FloatArray, smooth: bool, heights: FloatArray, best: NDArray[np.int64]) -> None:
+    """The highest of all rows at every place, and which it is."""
+    heights[:] = -math.inf
+    best[:] = -1
+    for j in range(len(rows)):
+        for i in range(len(heights)):
+            if rows[j, i] > heights[i]:
+                heights[i] = rows[j, i]
+                best[i] = j
+    if smooth:
+        for i in range(len(heights)):
+            if best[i] >= 0:
+                heights[i] += _between(y, rows, best[i], i)
+
+
+@njit(cache=True, nogil=True)
 def envelope(
     segments: FloatArray,
     segment_begins: NDArray[np.int64],
@@ -210,6 +246,7 @@ def envelope(
     step: float,
     smooth: bool,
     heights: FloatArray,
+    best: NDArray[np.int64],
 ) -> None:
     """Heights of the tool's lowest point over a part.
 
@@ -221,43 +258,89 @@ def envelope(
         start, step: places along the planes at which heights are wanted.
         smooth: whether heights are interpolated between sections where these change smoothly.
         heights: shape (p, n), filled; -inf where the tool touches nothing.
+        best: shape (p, n), filled with the section that is touched, -1 for none.
     """
     radius = disc + corner
     most = 0
     for p in range(len(planes)):
-        first = np.searchsorted(positions, planes[p] - radius, side="right")
-        most = max(most, np.searchsorted(positions, planes[p] + radius, side="left") - first)
+        first, last = _reach(positions, planes[p], radius)
+        most = max(most, last - first)
     rows = np.empty((most, heights.shape[1]))
     place, slope = np.empty(_TABLE), np.empty(_TABLE)
     for p in range(len(planes)):
-        first = np.searchsorted(positions, planes[p] - radius, side="right")
-        count = np.searchsorted(positions, planes[p] + radius, side="left") - first
-        near = rows[:count]
+        first, last = _reach(positions, planes[p], radius)
+        near = rows[: last - first]
         near[:] = -math.inf
-        for j in range(count):
-            k = first + j
-            d = planes[p] - positions[k]
+        for k in range(first, last):
             _section_row(
                 segments[segment_begins[k] : segment_begins[k + 1]],
                 corners[corner_begins[k] : corner_begins[k + 1]],
-                d * d,
+                (planes[p] - positions[k]) ** 2,
                 disc,
                 corner,
                 start,
                 step,
                 place,
                 slope,
-                near[j],
+                near[k - first],
             )
-        y = positions[first : first + count]
-        heights[p] = -math.inf
-        best = np.zeros(heights.shape[1], dtype=np.int64)
-        for j in range(count):
-            for i in range(heights.shape[1]):
-                if near[j, i] > heights[p, i]:
-                    heights[p, i] = near[j, i]
-                    best[i] = j
-        if smooth:
-            for i in range(heights.shape[1]):
-                if heights[p, i] > -math.inf:
-                    heights[p, i] += _between(y, near, best[i], i)
+        _highest(positions[first:last], near, smooth, heights[p], best[p])
+        for i in range(heights.shape[1]):
+            if best[p, i] >= 0:
+                best[p, i] += first
+
+
+@njit(cache=True, nogil=True)
+def refine(
+    segments: FloatArray,
+    segment_begins: NDArray[np.int64],
+    corners: FloatArray,
+    corner_begins: NDArray[np.int64],
+    positions: FloatArray,
+    cells: FloatArray,
+    sections: NDArray[np.int64],
+    disc: float,
+    corner: float,
+    step: float,
+    smooth: bool,
+    heights: FloatArray,
+) -> None:
+    """Heights at finer places within some cells, of the sections touched at the cells' ends and those beside them.
+
+    Args:
+        cells: shape (c, 2): plane and first place of each cell.
+        sections: shape (c, 2): the sections touched at its ends, -1 for none.
+        step: distance of the finer places.
+        heights: shape (c, n), filled; -inf where the tool touches nothing.
+    """
+    radius = disc + corner
+    n = heights.shape[1]
+    rows, here = np.empty((_ASKED, n)), np.empty(n)
+    best = np.empty(n, dtype=np.int64)
+    place, slope = np.empty(_TABLE), np.empty(_TABLE)
+    for c in range(len(cells)):
+        heights[c] = -math.inf
+        begin, end = _reach(positions, cells[c, 0], radius)
+        for side in range(2):
+            middle = sections[c, side]
+            if middle < 0 or (side == 1 and middle == sections[c, 0]):
+                continue
+            first, last = max(begin, middle - _ASKED // 2), min(end, middle + _ASKED // 2 + 1)
+            near = rows[: max(0, last - first)]
+            near[:] = -math.inf
+            for k in range(first, last):
+                _section_row(
+                    segments[segment_begins[k] : segment_begins[k + 1]],
+                    corners[corner_begins[k] : corner_begins[k + 1]],
+                    (cells[c, 0] - positions[k]) ** 2,
+                    disc,
+                    corner,
+                    cells[c, 1],
+                    step,
+                    place,
+                    slope,
+                    near[k - first],
+                )
+            _highest(positions[first : max(first, last)], near, smooth, here, best)
+            for i in range(n):
+                heights[c, i] = max(heights[c, i], here[i])
