@@ -23,6 +23,7 @@ from twin.cam.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
 from twin.cam.sections import SlicedPart, slice_part
 from twin.cam.surface import surface_of
 from twin.cam.surface_way import SurfaceWay
+from twin.cam.tip_lines import Places, Profiles, tip_lines
 from twin.cam.to_nc import describe
 from twin.cam.toolpath import ToolPath
 from twin.errors import ToolPathError
@@ -36,6 +37,8 @@ from twin.tools.text import parse_tool
 Report = Callable[[str, float], None]
 #: Chords of inflated sections stand this part of the pitch inside their arcs.
 _CHORD_PITCHES = 0.005
+#: Chords of rows stand no farther off the tip's true line.
+_CHORD_MM = 0.0005
 #: Planes that are inflated between two reports.
 _PLANES_TOGETHER = 32
 #: What a contour's default overhang lacks to the tool's radius, so that flush sides of the stock are left alone.
@@ -132,19 +135,18 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
     along, across = (0, 1) if settings.direction == "x" else (1, 0)
     low, high = ground.region_mm + ground.overhang_mm * np.array([[-1.0], [1.0]])
     at = row_positions(float(low[across]), float(high[across]), settings.stepover_mm)
-    ball = ground.tool.disc_mm == 0.0
-    element = StructuringElement.ball(ground.tool.corner_mm) if ball else StructuringElement.tool(ground.tool)
+    report("profiles", 0.0)
+    profiles = Profiles.of(ground.part.sections(ACROSS[settings.direction]))
+    places = Places.between(float(low[along]), float(high[along]), settings.pitch_mm)
+    element = StructuringElement.tool(ground.tool)
     passes: list[Pass] = []
     for layer in reversed(range(settings.layers)):
+        report("rows", 1.0 - (layer + 1) / settings.layers)
         left = settings.allowance_mm + layer * settings.axial_depth_mm
-        regions = _inflated(settings, ground, element.with_allowance(left), ACROSS[settings.direction], at, report)
-        rows = Rows(
-            direction=settings.direction, at_mm=at, regions=regions, tip_mm=-ground.tool.corner_mm if ball else 0.0
-        )
+        floor = ground.floor_mm + left
+        lines = tip_lines(profiles, element, at, places, floor, allowance_mm=left, chord_mm=_CHORD_MM)
+        rows = Rows(direction=settings.direction, at_mm=at, lines_mm=lines)
         options = ScanOptions(
-            low_mm=float(low[along]),
-            high_mm=float(high[along]),
-            floor_mm=ground.floor_mm + left,
             top_mm=float(ground.stock_mm[1, 2]),
             zigzag=settings.zigzag,
             climb=settings.climb,
