@@ -8,6 +8,7 @@ import typer
 
 from twin.cli.export import export
 from twin.cli.info import info
+from twin.cli.machinable import machinable
 from twin.cli.mesh import mesh
 from twin.cli.replay import replay
 from twin.cli.schema import schema
@@ -24,7 +25,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, mesh, schema):
+for command in (replay, view, info, export, mesh, machinable, schema):
     app.command()(command)
 
 
