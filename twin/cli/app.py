@@ -8,6 +8,7 @@ import typer
 
 from twin.cli.export import export
 from twin.cli.info import info
+from twin.cli.machinable import machinable
 from twin.cli.mesh import mesh
 from twin.cli.paths import paths
 from twin.cli.replay import replay
@@ -26,7 +27,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, mesh, paths, verify, schema):
+for command in (replay, view, info, export, mesh, machinable, paths, verify, schema):
     app.command()(command)
 
 
