@@ -37,9 +37,9 @@ for command in (
     compare,
     identify,
     mesh,
+    machinable,
     paths,
     verify,
-    machinable,
     schema,
 ):
     app.command()(command)
