@@ -43,7 +43,7 @@ def test_on_level_ground_every_tool_stands_at_its_height(text: str) -> None:
 @pytest.mark.parametrize("text", TOOLS)
 @pytest.mark.parametrize("slope", [0.01, 0.5, 1.7, 3.0, 8.0])
 def test_on_a_slope(text: str, slope: float) -> None:
-    # the plane is touched where the meridian has its angle: disc tan + (corner / cos - corner), or the top rim of a cone
+    # it is touched where the meridian has its angle: disc tan + corner / cos - corner, or at the top rim of a cone
     tool = parse_tool(text)
     cos = 1.0 / math.hypot(1.0, slope)
     rise = tool.disc_mm * slope + tool.corner_mm * (1.0 / cos - 1.0)
