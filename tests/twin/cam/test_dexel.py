@@ -241,7 +241,7 @@ def test_the_tri_slice_model_leaves_the_same(text: str) -> None:
     off = dexels.heights_mm - tops
     assert np.quantile(np.abs(off), 0.97) < 6.0 * tolerance.chord_mm
     assert off.min() > -4.0 * tolerance.chord_mm
-    # walls lie anywhere in a dexel's cell: half a pitch along some 40 mm of borders, 2 mm deep, with errors of both signs
+    # walls lie anywhere in a dexel's cell: half a pitch along 40 mm of borders 2 mm deep, with errors of both signs
     assert dexels.volume_above_mm3(-2.0) == pytest.approx(piece.volume_mm3(0), abs=2.0)
 
 
