@@ -268,10 +268,9 @@ def _largest_share(high: float, least: float, most: float, one: float) -> float:
     """Largest x / sqrt(one + x x + y y) with x <= high and y in [least, most]."""
     if high >= 1e6:
         return 1.0
+    across = max(abs(least), abs(most))
     if high > 0.0:
         across = 0.0 if least <= 0.0 <= most else min(abs(least), abs(most))
-    else:
-        across = max(abs(least), abs(most))
     root = math.sqrt(one + high * high + across * across)
     return high / root if root > 0.0 else 1.0
 
