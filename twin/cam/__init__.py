@@ -1,0 +1,1 @@
+"""Tool paths from slices: passes, links, arcs, and the way to an NC program."""
