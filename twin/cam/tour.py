@@ -96,7 +96,7 @@ class Search:
     Attributes:
         method: greedy alone, with 2-opt and Or-opt after it, or with iterated local search after that.
         seed: of the double-bridges; equal seeds give equal tours.
-        iterations: double-bridges; 40 a piece, at least 2000, if not given.
+        iterations: double-bridges; 5 a piece, at least 500, if not given.
         budget_s: longest time spent on double-bridges; with it, the result depends on the machine. Not limited if None.
     """
 
@@ -167,7 +167,7 @@ def _search(
     if search.method != "greedy" and n > 3:
         # the dummy closes the tour; its two ends are none
         tour, back = np.append(tour, n), np.append(back, np.int8(0))
-        rest = (_neighbours(ends), ends, lift, speeds, *field, two_way)
+        rest = (*_neighbours(ends, lift, speeds), ends, lift, speeds, *field, two_way)
         kernels.local_search(tour, back, *rest)
         if search.method == "ils":
             _iterate(tour, back, rest, search)
@@ -181,7 +181,7 @@ def _search(
 
 
 def _iterate(tour: NDArray[np.int64], back: NDArray[np.int8], rest: tuple, search: Search) -> None:  # type: ignore[type-arg]
-    left = search.iterations if search.iterations is not None else max(2000, 40 * len(tour))
+    left = search.iterations if search.iterations is not None else max(500, 5 * len(tour))
     random = 1 + search.seed % 2147483646
     end = None if search.budget_s is None else time.monotonic() + search.budget_s
     while left > 0 and (end is None or time.monotonic() < end):
@@ -189,16 +189,16 @@ def _iterate(tour: NDArray[np.int64], back: NDArray[np.int8], rest: tuple, searc
         left -= _CHUNK
 
 
-def _neighbours(ends: FloatArray) -> NDArray[np.int64]:
-    """For each end the pieces whose ends are nearest, shape (2 n, k); piece 0 is the start."""
-    k = min(len(ends), 2 * _NEAR + 2)
-    near = np.asarray(cKDTree(ends).query(ends, k=k)[1], dtype=np.int64) // 2
-    own = np.arange(len(ends)) // 2
-    table = np.empty((len(ends), min(_NEAR, len(ends) // 2 - 1)), dtype=np.int64)
-    for row, (mine, found) in enumerate(zip(own, near, strict=True)):
-        others = list(dict.fromkeys(p for p in found.tolist() if p != mine))[: table.shape[1]]
-        table[row] = others + others[-1:] * (table.shape[1] - len(others))
-    return table
+def _neighbours(ends: FloatArray, lift: FloatArray, speeds: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+    """For each end the pieces whose ends are nearest, and the least time of a link to them, both shape (2 n, k)."""
+    count = min(_NEAR, len(ends) // 2 - 1)
+    distances, near = cKDTree(ends).query(ends, k=min(len(ends), 2 * count + 2))
+    table = np.empty((len(ends), count), dtype=np.int64)
+    reach = np.empty((len(ends), count))
+    kernels.distinct(np.asarray(near, dtype=np.int64), np.asarray(distances, dtype=np.float64), table, reach)
+    stay = kernels.trapezoids_s(reach, speeds[0], speeds[1])
+    over = lift[:, None] + lift.min() + kernels.trapezoids_s(reach, speeds[2], speeds[3])
+    return table, np.minimum(stay, over)
 
 
 def _opened(tour: NDArray[np.int64], back: NDArray[np.int8]) -> tuple[NDArray[np.int64], NDArray[np.int8]]:

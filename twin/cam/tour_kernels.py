@@ -36,9 +36,38 @@ def trapezoid_s(length: float, speed: float, acceleration: float) -> float:
 
 
 @njit(cache=True, nogil=True)
+def trapezoids_s(lengths: FloatArray, speed: float, acceleration: float) -> FloatArray:
+    """`trapezoid_s` of a table of lengths."""
+    times = np.empty_like(lengths)
+    for i in range(lengths.shape[0]):
+        for j in range(lengths.shape[1]):
+            times[i, j] = trapezoid_s(lengths[i, j], speed, acceleration)
+    return times
+
+
+@njit(cache=True, nogil=True)
+def distinct(
+    near: NDArray[np.int64], distances: FloatArray, table: NDArray[np.int64], reach: FloatArray
+) -> None:
+    """The pieces of the nearest ends of each end, nearest first, each once and not its own; the last one fills up."""
+    for e in range(near.shape[0]):
+        k = 0
+        for m in range(near.shape[1]):
+            piece = near[e, m] // 2
+            known = piece == e // 2
+            for j in range(k):
+                known = known or table[e, j] == piece
+            if not known and k < table.shape[1]:
+                table[e, k], reach[e, k] = piece, distances[e, m]
+                k += 1
+        for j in range(max(k, 1), table.shape[1]):
+            table[e, j], reach[e, j] = table[e, j - 1], reach[e, j - 1]
+
+
+@njit(cache=True, nogil=True)
 def _sees(ax: float, ay: float, bx: float, by: float, clear: FloatArray, grid: FloatArray) -> bool:
     """Whether a straight line keeps off the walls: it leaps as far as the distance to the nearest one allows."""
-    length = math.hypot(bx - ax, by - ay)
+    length = math.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
     pitch = grid[2]
     s = 0.0
     while True:
@@ -61,7 +90,7 @@ def link_s(
     if e >= n or f >= n:
         return _FIXED if min(e, f) < 2 else 0.0
     ax, ay, bx, by = ends[e, 0], ends[e, 1], ends[f, 0], ends[f, 1]
-    length = math.hypot(bx - ax, by - ay)
+    length = math.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
     over = lift[e] + lift[f] + trapezoid_s(length, speeds[2], speeds[3])
     stay = trapezoid_s(length, speeds[0], speeds[1])
     if stay >= over or clear.shape[0] == 0:
@@ -282,6 +311,7 @@ def _improve(
     back: NDArray[np.int8],
     place: NDArray[np.int64],
     near: NDArray[np.int64],
+    soonest: FloatArray,
     ends: FloatArray,
     lift: FloatArray,
     speeds: FloatArray,
@@ -306,6 +336,8 @@ def _improve(
         if old <= _GAIN:
             continue
         for k in range(near.shape[1]):
+            if soonest[e, k] >= old - _GAIN:
+                break
             other = near[e, k]
             r = place[other]
             if r in (p, q):
@@ -371,6 +403,7 @@ def _settle(
     back: NDArray[np.int8],
     place: NDArray[np.int64],
     near: NDArray[np.int64],
+    soonest: FloatArray,
     ends: FloatArray,
     lift: FloatArray,
     speeds: FloatArray,
@@ -390,7 +423,7 @@ def _settle(
             continue
         while True:
             gain = _improve(
-                node, tour, back, place, near, ends, lift, speeds, clear, grid, two_way, log, queue, waits
+                node, tour, back, place, near, soonest, ends, lift, speeds, clear, grid, two_way, log, queue, waits
             )
             if gain <= 0.0:
                 break
@@ -403,6 +436,7 @@ def local_search(
     tour: NDArray[np.int64],
     back: NDArray[np.int8],
     near: NDArray[np.int64],
+    soonest: FloatArray,
     ends: FloatArray,
     lift: FloatArray,
     speeds: FloatArray,
@@ -412,13 +446,13 @@ def local_search(
 ) -> float:
     """2-opt and Or-opt from a closed tour until nothing is gained, in place; returns the gain, s.
 
-    ``near`` has a row of pieces for each end. The dummy is piece ``len(tour) - 1``.
+    ``near`` has a row of pieces for each end, nearest first; ``soonest`` bounds the time to them from below. The dummy is piece ``len(tour) - 1``.
     """
     n = len(tour)
     place, queue, waits, log = _state(tour)
     for k in range(n):
         _push(queue, waits, tour[k])
-    return _settle(tour, back, place, near, ends, lift, speeds, clear, grid, two_way, log, queue, waits)
+    return _settle(tour, back, place, near, soonest, ends, lift, speeds, clear, grid, two_way, log, queue, waits)
 
 
 @njit(cache=True, nogil=True)
@@ -437,6 +471,7 @@ def iterate(
     tour: NDArray[np.int64],
     back: NDArray[np.int8],
     near: NDArray[np.int64],
+    soonest: FloatArray,
     ends: FloatArray,
     lift: FloatArray,
     speeds: FloatArray,
@@ -480,7 +515,7 @@ def iterate(
         for m in (pa, ia, ib0, ib, ic0, ic):
             _push(queue, waits, tour[m])
         _swap_neighbours(tour, back, place, log, ia, ib, ic)
-        gain += _settle(tour, back, place, near, ends, lift, speeds, clear, grid, two_way, log, queue, waits)
+        gain += _settle(tour, back, place, near, soonest, ends, lift, speeds, clear, grid, two_way, log, queue, waits)
         if gain >= -1e-12 or 2 * log[0] + 2 >= len(log):
             total += gain
             continue
