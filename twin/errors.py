@@ -28,6 +28,10 @@ class ToolError(TwinError):
     """A tool whose shape or edge cannot be built."""
 
 
+class ToolPathError(TwinError):
+    """A tool path that cannot be made, or written: wrong parameters, an empty one, or a file."""
+
+
 class ArchiveError(TwinError):
     """A run's file that cannot be written or read."""
 

@@ -1,1 +1,1 @@
-"""Tool paths from slices: passes, links, arcs, and the way to an NC program."""
+"""Computer-aided manufacturing: where a tool may go, tool paths from slices, NC programs from them."""

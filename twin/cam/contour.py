@@ -1,0 +1,185 @@
+"""Contour paths: at every level the outlines of the inflated part's section, and further ones outside of them.
+
+The tri-slice paper, section 3.1: xy slices of the inflated part are tool paths; expanded by the radial depth of cut
+they are the layers before them. What lies higher counts as well, for the tool comes from above: a level's section is
+united with all above it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.arrays import FloatArray
+from twin.cam.linking import Pass
+from twin.geometry.outline import (
+    Area,
+    area_of,
+    grown,
+    holds,
+    minus,
+    nearest_area,
+    outlines,
+    pieces,
+    united,
+)
+from twin.geometry.region import Region
+
+#: A cleared area needs no more layers than this; more are a mistake in the radial depth.
+MOST_LAYERS = 10_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Level:
+    """The tool's room at one height.
+
+    Attributes:
+        z_mm: height of the tip.
+        area: where the reference point may not be: the inflated part here and above.
+    """
+
+    z_mm: float
+    area: Area
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ContourOptions:
+    """How levels become passes.
+
+    Attributes:
+        window: where the tip may be.
+        stock: the stock's outline grown by what the tool reaches: outside of it nothing is cut.
+        top_mm: material's highest point.
+        layers: outlines a level, the part's own included; None for as many as clear the window.
+        radial_depth_mm: distance of the layers.
+        climb: part on the right of the feed, else on the left.
+        chord_mm: how far chords may stand off the arcs of expanded outlines, outwards.
+    """
+
+    window: Area
+    stock: Area
+    top_mm: float
+    layers: int | None = 1
+    radial_depth_mm: float
+    climb: bool = True
+    chord_mm: float = 0.001
+
+
+def shadow_levels(heights_mm: FloatArray, regions: Sequence[Region], wanted: Sequence[int]) -> tuple[Level, ...]:
+    """Levels from the highest to the lowest.
+
+    Args:
+        heights_mm: of the tip for every plane, increasing.
+        regions: the inflated part in (x, y) on every plane.
+        wanted: numbers of the planes that are levels.
+    """
+    levels: list[Level] = []
+    above: Area = area_of(Region())
+    high = len(regions)
+    for k in sorted(wanted, reverse=True):
+        above = united([above, *(area_of(regions[j]) for j in range(k, high))])
+        levels.append(Level(z_mm=float(heights_mm[k]), area=above))
+        high = k
+    return tuple(levels)
+
+
+def contour_passes(levels: Sequence[Level], options: ContourOptions) -> tuple[Pass, ...]:
+    """Level by level from the top; in each connected area from the outermost layer to the part's own outline.
+
+    Where nothing but one layer is cut at each level, all passes have one layer number, so that they may be linked along
+    the part; else each level has its own.
+    """
+    passes: list[Pass] = []
+    cleared_mm = options.top_mm
+    for number, level in enumerate(levels):
+        made = list(_level_passes(level, options, cleared_mm, 0 if options.layers == 1 else number))
+        passes += made
+        if options.layers is None:
+            cleared_mm = min(cleared_mm, level.z_mm)
+    return tuple(passes)
+
+
+def _level_passes(level: Level, options: ContourOptions, top_mm: float, layer: int) -> Iterator[Pass]:
+    free = pieces(minus(options.window, level.area))
+    lines: list[list[tuple[int, FloatArray]]] = [[] for _ in free]
+    for k in range(MOST_LAYERS if options.layers is None else options.layers):
+        area = grown(level.area, k * options.radial_depth_mm, options.chord_mm)
+        found = outlines(area, options.window)
+        if not found:
+            break
+        for line in found:
+            lines[nearest_area(free, line[len(line) // 2])].append((k, line))
+    at: FloatArray | None = None
+    for own in lines:
+        for one in _in_order(own, at):
+            line = one[::-1] if options.climb else one
+            line = _from_nearest(line, at)
+            at = line[-1]
+            entered = None if _outside(line[0], options.stock) else top_mm
+            points = np.column_stack((line, np.full(len(line), level.z_mm)))
+            yield Pass(points_mm=points, top_mm=entered, layer=layer)
+
+
+def _in_order(lines: list[tuple[int, FloatArray]], at: FloatArray | None) -> Iterator[FloatArray]:
+    """Outer layers first; in a layer the line that is nearest to the end of the last one."""
+    left = list(lines)
+    while left:
+        outermost = max(k for k, _ in left)
+        here = [i for i, (k, _) in enumerate(left) if k == outermost]
+        distances = [0.0 if at is None else float(np.linalg.norm(left[i][1] - at, axis=1).min()) for i in here]
+        _, line = left.pop(here[int(np.argmin(distances))])
+        yield line
+        at = line[-1]
+
+
+def _from_nearest(line: FloatArray, at: FloatArray | None) -> FloatArray:
+    """A closed line begun at its point nearest to a place; an open one as it is."""
+    if at is None or np.any(line[0] != line[-1]):
+        return line
+    k = int(np.argmin(np.linalg.norm(line - at, axis=1)))
+    return np.concatenate((line[k:-1], line[: k + 1]))
+
+
+def _outside(point: FloatArray, stock: Area) -> bool:
+    return not holds(stock, np.array([point, point]))
+
+
+class LevelWay:
+    """The room beside the outlines, see `twin.cam.linking.Way`.
+
+    Args:
+        levels: from the highest to the lowest.
+        window: where the tip may be.
+        top_mm: height of nothing but air.
+    """
+
+    def __init__(self, levels: Sequence[Level], window: Area, top_mm: float) -> None:
+        self._levels = {level.z_mm: level for level in levels}
+        self._window = window
+        self._top_mm = top_mm
+        self._free: dict[float, Area] = {}
+
+    def between(self, start_mm: FloatArray, end_mm: FloatArray) -> FloatArray | None:
+        """Straight at the height of the start, then straight down."""
+        if end_mm[2] > start_mm[2]:
+            return None
+        over = np.array([end_mm[0], end_mm[1], start_mm[2]])
+        if not self.free(np.array([start_mm, over])):
+            return None
+        return np.array([start_mm, over] if over[2] == end_mm[2] else [start_mm, over, end_mm])
+
+    def free(self, points_mm: FloatArray) -> bool:
+        """Whether a level line lies in the free area of its level; False for heights that are no level."""
+        z = float(points_mm[0, 2])
+        level = self._levels.get(z)
+        if level is None or np.any(points_mm[:, 2] != z):
+            return False
+        if z not in self._free:
+            self._free[z] = minus(self._window, level.area)
+        return holds(self._free[z], points_mm[:, :2])
+
+    def clear_z_mm(self, start_mm: FloatArray, end_mm: FloatArray) -> float:  # noqa: ARG002
+        """The material's top."""
+        return self._top_mm

@@ -1,0 +1,299 @@
+"""What of a triangle surface a tool coming from above can rest on; compiled.
+
+A tool rests on an edge only where its outward normal there has no component into any triangle of the edge, and on a
+vertex only where that holds for all its edges: the normal cone of the point. Directions n point from the surface to
+the tool's axis side, with nz >= 0. Triangles are sets of points here: no orientation counts, open surfaces, several
+triangles at an edge and triangles without area are all the same rule.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+
+#: Cones thinner than this have no part of their own: neighbours touch there, up to R times this.
+_THIN_RAD = 1e-10
+#: Cones are widened by this against rounding; more elements are asked, never a wrong height found.
+_WIDEN_RAD = 1e-9
+#: Steepest direction of a vertex cone, as a slope; what lies beyond is taken as level.
+_STEEPEST = 1e6
+
+
+@njit(cache=True, nogil=True)
+def _mixed(bits: int, h: int) -> int:
+    """One step of a shift-and-xor hash; no product, for products overflow loudly without the compiler."""
+    h ^= bits
+    h ^= (h << 13) & 0x7FFFFFFFFFFFFFFF
+    h ^= (h >> 7) & 0x01FFFFFFFFFFFFFF
+    h ^= (h << 17) & 0x7FFFFFFFFFFFFFFF
+    return h
+
+
+@njit(cache=True, nogil=True)
+def weld(corners: FloatArray, bits: NDArray[np.int64], ids: NDArray[np.int64], vertices: FloatArray) -> int:
+    """Number equal corners alike.
+
+    Args:
+        corners, bits: shape (k, 3), the coordinates (no negative zeros) and the same as integers.
+        ids: shape (k,), filled with vertex numbers in order of first appearance.
+        vertices: shape (k, 3), filled with the vertices.
+
+    Returns:
+        how many vertices there are.
+    """
+    size = 1024
+    while size < 2 * len(corners):
+        size *= 2
+    table = np.full(size, -1, dtype=np.int64)
+    count = 0
+    for i in range(len(corners)):
+        h = _mixed(bits[i, 2], _mixed(bits[i, 1], _mixed(bits[i, 0], 0)))
+        place = (h ^ (h >> 31)) & (size - 1)
+        while True:
+            v = table[place]
+            if v < 0:
+                table[place] = count
+                vertices[count, 0], vertices[count, 1], vertices[count, 2] = corners[i, 0], corners[i, 1], corners[i, 2]
+                ids[i] = count
+                count += 1
+                break
+            if (
+                vertices[v, 0] == corners[i, 0]
+                and vertices[v, 1] == corners[i, 1]
+                and vertices[v, 2] == corners[i, 2]
+            ):
+                ids[i] = v
+                break
+            place = (place + 1) & (size - 1)
+    return count
+
+
+@njit(cache=True, nogil=True)
+def edge_runs(triangles: NDArray[np.int64], vertices: int, order: NDArray[np.int64], begins: NDArray[np.int64]) -> int:
+    """Group the sides of triangles by the edge they lie on.
+
+    Side 3 t + j joins corners j and j + 1 of triangle t; sides with one vertex twice are left out.
+
+    Args:
+        order: shape (3 m,), filled with sides, edge by edge.
+        begins: shape (3 m + 1,), filled with where each edge's sides begin, and the end.
+
+    Returns:
+        how many edges there are.
+    """
+    starts = np.zeros(vertices + 1, dtype=np.int64)
+    high = np.empty(3 * len(triangles), dtype=np.int64)
+    for t in range(len(triangles)):
+        for j in range(3):
+            a, b = triangles[t, j], triangles[t, (j + 1) % 3]
+            high[3 * t + j] = max(a, b)
+            if a != b:
+                starts[min(a, b) + 1] += 1
+    for v in range(vertices):
+        starts[v + 1] += starts[v]
+    cursor = starts[:-1].copy()
+    for t in range(len(triangles)):
+        for j in range(3):
+            a, b = triangles[t, j], triangles[t, (j + 1) % 3]
+            if a != b:
+                low = min(a, b)
+                order[cursor[low]] = 3 * t + j
+                cursor[low] += 1
+    edges = 0
+    for v in range(vertices):
+        first, last = starts[v], starts[v + 1]
+        if last - first > 64:
+            part = order[first:last].copy()
+            order[first:last] = part[np.argsort(high[part], kind="mergesort")]
+        else:
+            for i in range(first + 1, last):
+                side, k = order[i], i
+                while k > first and high[order[k - 1]] > high[side]:
+                    order[k] = order[k - 1]
+                    k -= 1
+                order[k] = side
+        for i in range(first, last):
+            if i == first or high[order[i]] != high[order[i - 1]]:
+                begins[edges] = i
+                edges += 1
+    begins[edges] = starts[vertices]
+    return edges
+
+
+@njit(cache=True, nogil=True)
+def edge_cones(
+    vertices: FloatArray,
+    triangles: NDArray[np.int64],
+    order: NDArray[np.int64],
+    begins: NDArray[np.int64],
+    first: int,
+    last: int,
+    ends: NDArray[np.int64],
+    cones: FloatArray,
+) -> None:
+    """Ends and normal cone of edges ``first`` to ``last - 1``.
+
+    In the plane across the edge, with a = level direction and b = the upward one, normals are cos(phi) a + sin(phi) b.
+
+    Args:
+        ends: shape (e, 2), filled.
+        cones: shape (e, 2), filled with the least and largest phi in [0, pi]; least > largest where nothing rests.
+    """
+    for e in range(first, last):
+        side = order[begins[e]]
+        t, j = side // 3, side % 3
+        v0, v1 = triangles[t, j], triangles[t, (j + 1) % 3]
+        ends[e, 0], ends[e, 1] = v0, v1
+        cones[e, 0], cones[e, 1] = 1.0, 0.0
+        ex = vertices[v1, 0] - vertices[v0, 0]
+        ey = vertices[v1, 1] - vertices[v0, 1]
+        ez = vertices[v1, 2] - vertices[v0, 2]
+        level = math.hypot(ex, ey)
+        length = math.hypot(level, ez)
+        if level <= 1e-12 * length:
+            continue
+        ax, ay = ey / level, -ex / level
+        bx, by, bz = -ex * ez / (level * length), -ey * ez / (level * length), level / length
+        low, high = 0.0, math.pi
+        doubt = 0.0
+        for i in range(begins[e], begins[e + 1]):
+            t, j = order[i] // 3, order[i] % 3
+            v2 = triangles[t, (j + 2) % 3]
+            wx = vertices[v2, 0] - vertices[v0, 0]
+            wy = vertices[v2, 1] - vertices[v0, 1]
+            wz = vertices[v2, 2] - vertices[v0, 2]
+            u = wx * ax + wy * ay
+            w = wx * bx + wy * by + wz * bz
+            off = math.hypot(u, w)
+            reach = abs(wx) + abs(wy) + abs(wz) + length
+            if off <= 1e-12 * reach:
+                continue
+            doubt += 1e-14 * reach / off
+            psi = math.atan2(w, u)
+            if u >= 0.0:
+                low = max(low, psi + 0.5 * math.pi)
+            elif psi > 0.0:
+                high = min(high, psi - 0.5 * math.pi)
+            else:
+                high = min(high, psi + 1.5 * math.pi)
+        if high - low > _THIN_RAD - doubt:
+            cones[e, 0] = max(0.0, low - _WIDEN_RAD - doubt)
+            cones[e, 1] = min(math.pi, high + _WIDEN_RAD + doubt)
+
+
+@njit(cache=True, nogil=True)
+def vertex_edges(
+    ends: NDArray[np.int64], vertices: int, begins: NDArray[np.int64], listed: NDArray[np.int64]
+) -> int:
+    """List every vertex's edges.
+
+    Args:
+        begins: shape (n + 1,) zeros, filled with where each vertex's edges begin.
+        listed: shape (2 e,), filled with edges.
+
+    Returns:
+        the largest number of edges at one vertex.
+    """
+    for e in range(len(ends)):
+        begins[ends[e, 0] + 1] += 1
+        begins[ends[e, 1] + 1] += 1
+    most = 0
+    for v in range(vertices):
+        most = max(most, begins[v + 1])
+        begins[v + 1] += begins[v]
+    cursor = begins[:-1].copy()
+    for e in range(len(ends)):
+        for k in range(2):
+            v = ends[e, k]
+            listed[cursor[v]] = e
+            cursor[v] += 1
+    return most
+
+
+@njit(cache=True, nogil=True)
+def vertex_cones(
+    vertices: FloatArray,
+    ends: NDArray[np.int64],
+    begins: NDArray[np.int64],
+    listed: NDArray[np.int64],
+    most: int,
+    first: int,
+    last: int,
+    cones: FloatArray,
+) -> None:
+    """Box of the normal cone of vertices ``first`` to ``last - 1``.
+
+    Normals are (x, y, 1) up to length: every edge is a half plane, and the cone a convex polygon that is clipped.
+
+    Args:
+        cones: shape (n, 4), filled with least x, largest x, least y, largest y; least > largest where nothing rests.
+    """
+    px, py = np.empty(most + 8), np.empty(most + 8)
+    qx, qy = np.empty(most + 8), np.empty(most + 8)
+    for v in range(first, last):
+        cones[v, 0], cones[v, 1], cones[v, 2], cones[v, 3] = 1.0, -1.0, 1.0, -1.0
+        count = 4
+        px[0], px[1], px[2], px[3] = -_STEEPEST, _STEEPEST, _STEEPEST, -_STEEPEST
+        py[0], py[1], py[2], py[3] = -_STEEPEST, -_STEEPEST, _STEEPEST, _STEEPEST
+        for i in range(begins[v], begins[v + 1]):
+            e = listed[i]
+            other = ends[e, 0] + ends[e, 1] - v
+            ex = vertices[other, 0] - vertices[v, 0]
+            ey = vertices[other, 1] - vertices[v, 1]
+            ez = vertices[other, 2] - vertices[v, 2]
+            length = math.sqrt(ex * ex + ey * ey + ez * ez)
+            if length == 0.0:
+                continue
+            ex, ey, ez = ex / length, ey / length, ez / length + _THIN_RAD
+            kept = 0
+            x0, y0 = px[count - 1], py[count - 1]
+            f0 = ex * x0 + ey * y0 + ez
+            for k in range(count):
+                x1, y1 = px[k], py[k]
+                f1 = ex * x1 + ey * y1 + ez
+                if (f0 <= 0.0) != (f1 <= 0.0):
+                    s = f0 / (f0 - f1)
+                    qx[kept], qy[kept] = x0 + s * (x1 - x0), y0 + s * (y1 - y0)
+                    kept += 1
+                if f1 <= 0.0:
+                    qx[kept], qy[kept] = x1, y1
+                    kept += 1
+                x0, y0, f0 = x1, y1, f1
+            px, qx = qx, px
+            py, qy = qy, py
+            count = kept
+            if count == 0:
+                break
+        if count > 0:
+            cones[v, 0], cones[v, 1] = px[:count].min(), px[:count].max()
+            cones[v, 2], cones[v, 3] = py[:count].min(), py[:count].max()
+
+
+@njit(cache=True, nogil=True)
+def face_slopes(vertices: FloatArray, triangles: NDArray[np.int64], normals: FloatArray) -> None:
+    """Unit normals turned upwards, shape (m, 3); nz = 0 for triangles on edge or without area."""
+    for t in range(len(triangles)):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        ux, uy, uz = (
+            vertices[b, 0] - vertices[a, 0],
+            vertices[b, 1] - vertices[a, 1],
+            vertices[b, 2] - vertices[a, 2],
+        )
+        wx, wy, wz = (
+            vertices[c, 0] - vertices[a, 0],
+            vertices[c, 1] - vertices[a, 1],
+            vertices[c, 2] - vertices[a, 2],
+        )
+        nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
+        length = math.sqrt(nx * nx + ny * ny + nz * nz)
+        scale = (abs(ux) + abs(uy) + abs(uz)) * (abs(wx) + abs(wy) + abs(wz))
+        if length <= 1e-14 * scale or abs(nz) <= 1e-12 * length:
+            normals[t, 0], normals[t, 1], normals[t, 2] = 0.0, 0.0, 0.0
+            continue
+        sign = 1.0 / length if nz > 0.0 else -1.0 / length
+        normals[t, 0], normals[t, 1], normals[t, 2] = nx * sign, ny * sign, nz * sign

@@ -1,0 +1,36 @@
+"""Work on parts of an array in threads, for kernels that let go of the interpreter."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+#: Parts that work is cut into; the same for any number of threads, so that results are the same too.
+PARTS = 8
+
+
+def in_parts(work: Callable[[int, int], None], count: int, *, threads: int | None = None, parts: int = PARTS) -> None:
+    """Call ``work(first, last)`` for parts of range(count).
+
+    Args:
+        threads: how many work, None for all cores.
+    """
+    bounds = [count * k // parts for k in range(parts + 1)]
+    run_all([_part(work, a, b) for a, b in zip(bounds, bounds[1:], strict=False) if b > a], threads)
+
+
+def run_all(tasks: list[Callable[[], None]], threads: int | None = None) -> None:
+    """Run tasks that do not depend on each other; the first error is raised."""
+    workers = min(len(tasks), (os.cpu_count() or 1) if threads is None else threads)
+    if workers <= 1:
+        for task in tasks:
+            task()
+        return
+    with ThreadPoolExecutor(max_workers=workers) as pool:
+        for future in [pool.submit(task) for task in tasks]:
+            future.result()
+
+
+def _part(work: Callable[[int, int], None], first: int, last: int) -> Callable[[], None]:
+    return lambda: work(first, last)
