@@ -62,11 +62,7 @@ def weld(corners: FloatArray, bits: NDArray[np.int64], ids: NDArray[np.int64], v
                 ids[i] = count
                 count += 1
                 break
-            if (
-                vertices[v, 0] == corners[i, 0]
-                and vertices[v, 1] == corners[i, 1]
-                and vertices[v, 2] == corners[i, 2]
-            ):
+            if vertices[v, 0] == corners[i, 0] and vertices[v, 1] == corners[i, 1] and vertices[v, 2] == corners[i, 2]:
                 ids[i] = v
                 break
             place = (place + 1) & (size - 1)
@@ -187,9 +183,7 @@ def edge_cones(
 
 
 @njit(cache=True, nogil=True)
-def vertex_edges(
-    ends: NDArray[np.int64], vertices: int, begins: NDArray[np.int64], listed: NDArray[np.int64]
-) -> int:
+def vertex_edges(ends: NDArray[np.int64], vertices: int, begins: NDArray[np.int64], listed: NDArray[np.int64]) -> int:
     """List every vertex's edges.
 
     Args:

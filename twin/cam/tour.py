@@ -143,7 +143,9 @@ def order_pieces(
         none = np.empty(0, dtype=np.int64)
         return Tour(order=none, backwards=none.astype(bool), down=none.astype(bool), link_s=0.0, first_s=0.0)
     ends = np.vstack((start, start, pieces.reshape(-1, 2)))
-    lift = np.concatenate(([start_lift_s] * 2, np.broadcast_to(np.asarray(lift_s, np.float64), (len(pieces), 2)).ravel()))
+    lift = np.concatenate(
+        ([start_lift_s] * 2, np.broadcast_to(np.asarray(lift_s, np.float64), (len(pieces), 2)).ravel())
+    )
     field = (np.empty((0, 0)), np.zeros(3)) if clear is None else (clear.distance_mm, _grid(clear))
     return _search(ends, lift, speeds.parameters, field, two_way, search)
 

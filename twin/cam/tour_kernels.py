@@ -46,9 +46,7 @@ def trapezoids_s(lengths: FloatArray, speed: float, acceleration: float) -> Floa
 
 
 @njit(cache=True, nogil=True)
-def distinct(
-    near: NDArray[np.int64], distances: FloatArray, table: NDArray[np.int64], reach: FloatArray
-) -> None:
+def distinct(near: NDArray[np.int64], distances: FloatArray, table: NDArray[np.int64], reach: FloatArray) -> None:
     """The pieces of the nearest ends of each end, nearest first, each once and not its own; the last one fills up."""
     for e in range(near.shape[0]):
         k = 0
@@ -201,9 +199,7 @@ def tour_s(
 
 
 @njit(cache=True, nogil=True)
-def _reverse(
-    tour: NDArray[np.int64], back: NDArray[np.int8], place: NDArray[np.int64], first: int, last: int
-) -> None:
+def _reverse(tour: NDArray[np.int64], back: NDArray[np.int8], place: NDArray[np.int64], first: int, last: int) -> None:
     """Run positions first..last of the closed tour the other way."""
     n = len(tour)
     inner = (last - first) % n + 1
