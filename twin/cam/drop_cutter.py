@@ -18,7 +18,7 @@ from twin.cam.surface import Surface, surface_of
 from twin.cam.threads import in_parts, run_all
 from twin.errors import ToolError
 from twin.tools.shape import ToolShape
-from twin.tools.text import shape_from_text
+from twin.tools.text import parse_tool
 
 #: Parts of the elements that are listed side by side.
 _LIST_PARTS = 4
@@ -82,7 +82,7 @@ class DropCutter:
         threads: int | None = None,
     ) -> None:
         self.surface = triangles if isinstance(triangles, Surface) else surface_of(triangles, threads=threads)
-        shape = shape_from_text(tool) if isinstance(tool, str) else tool
+        shape = parse_tool(tool) if isinstance(tool, str) else tool
         self.tool = shape
         self.floor_mm = float(self.surface.low_mm[2]) if floor_mm is None else float(floor_mm)
         if math.isnan(self.floor_mm):

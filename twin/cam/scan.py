@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.cam.envelope import below, upper_envelope
@@ -20,8 +19,8 @@ from twin.cam.linking import Pass
 from twin.geometry.region import Region
 
 Direction: TypeAlias = Literal["x", "y"]
-#: The family of planes that rows along a direction lie in, by the planes' normal.
-FAMILY: dict[Direction, int] = {"x": 1, "y": 0}
+#: The planes that rows along a direction lie in, by their normal.
+ACROSS: dict[Direction, int] = {"x": 1, "y": 0}
 #: Part of the step-over by which rows may be farther apart for rounding.
 _SLACK = 1e-9
 
@@ -66,22 +65,10 @@ class ScanOptions:
     layer: int = 0
 
 
-def row_planes(count: int, pitch_mm: float, stepover_mm: float) -> NDArray[np.int64]:
-    """Which of a family's planes become rows: the fewest, evenly spread, first and last included.
-
-    Args:
-        count: number of planes, at least 1.
-        pitch_mm: their distance.
-        stepover_mm: largest distance of two rows, at least the pitch.
-
-    Raises:
-        ValueError: a step-over below the pitch.
-    """
-    stride = math.floor(stepover_mm / pitch_mm + _SLACK)
-    if stride < 1:
-        raise ValueError(f"stepover_mm must be at least the pitch of the planes, {pitch_mm:g}, got {stepover_mm:g}")
-    gaps = math.ceil((count - 1) / stride)
-    return np.unique(np.floor(np.linspace(0.0, count - 1, gaps + 1) + 0.5).astype(np.int64))
+def row_positions(low_mm: float, high_mm: float, stepover_mm: float) -> FloatArray:
+    """Evenly spread rows, both ends included, no farther apart than the step-over; shape (n >= 1,)."""
+    gaps = math.ceil((high_mm - low_mm) / stepover_mm - _SLACK)
+    return np.linspace(low_mm, high_mm, gaps + 1)
 
 
 def scan_passes(rows: Rows, options: ScanOptions) -> tuple[Pass, ...]:

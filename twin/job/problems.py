@@ -20,7 +20,7 @@ Location: TypeAlias = tuple[str | int, ...]
 _LONGEST_VALUE = 60
 _BOUNDS = {at.Gt: ("above", "gt"), at.Ge: ("at least", "ge"), at.Lt: ("below", "lt"), at.Le: ("at most", "le")}
 _WORDS: dict[Any, str] = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
-_COUNTS = {2: "two", 3: "three"}
+_COUNTS = {2: "two", 3: "three", 4: "four", 6: "six"}
 
 
 @dataclass(frozen=True, slots=True)

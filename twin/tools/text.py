@@ -1,4 +1,4 @@
-"""Tool shapes from short text: ``ball D8``, ``flat D10``, ``bull D10 rc1``, ``taper D6 rc1 5deg``."""
+"""Tools as words on a command line: ``ball 8``, ``flat 10``, ``bull 12 r2``."""
 
 from __future__ import annotations
 
@@ -7,30 +7,64 @@ import re
 from twin.errors import ToolError
 from twin.tools.shape import ToolKind, ToolShape, tool_shape
 
-_NUMBER = r"(\d+(?:\.\d*)?|\.\d+)"
-_TEXT = re.compile(rf"(flat|ball|bull|taper)\s+D{_NUMBER}(?:\s+rc{_NUMBER})?(?:\s+{_NUMBER}deg)?", re.IGNORECASE)
-_KINDS: dict[str, ToolKind] = {"flat": "flat", "ball": "ball", "bull": "bull", "taper": "taper"}
+_EXPECTED = 'expected "ball D", "flat D", "bull D rC" or "taper D aDEG [rC]", lengths in mm, as in "bull 12 r2"'
+_KINDS: dict[str, ToolKind] = {"ball": "ball", "flat": "flat", "bull": "bull", "taper": "taper"}
+_NEEDS: dict[str, tuple[set[str], set[str]]] = {
+    "ball": (set(), {"l"}),
+    "flat": (set(), {"l"}),
+    "bull": ({"r"}, {"l"}),
+    "taper": ({"a"}, {"r", "l"}),
+}
+_NUMBER = r"(?:\d+\.?\d*|\.\d+)"
+_TEXT = re.compile(rf"([a-z]+)\s+d?({_NUMBER})((?:\s+(?:rc|[a-z]){_NUMBER}|\s+{_NUMBER}deg)*)", re.IGNORECASE)
+#: Flutes as long as this many diameters, unless told.
+_FLUTES = 3.0
 
 
-def shape_from_text(text: str, flute_length_mm: float | None = None) -> ToolShape:
-    """The shape that a short text names: kind, diameter, corner radius, taper half angle; mm and degrees.
+def parse_tool(text: str, flute_length_mm: float | None = None) -> ToolShape:
+    """The tool that words describe.
+
+    Kind, diameter, then letters with values: ``r`` or ``rc`` corner radius, ``a`` half angle of a taper in degrees
+    (or ``5deg``), ``l`` length of the flutes.
 
     Args:
-        flute_length_mm: height of the cutting part, three diameters where it is not given.
+        flute_length_mm: length of the flutes where the text does not tell it; three diameters if not given.
 
     Raises:
-        ToolError: text of another form, or a shape that cannot be.
+        ToolError: other words, a letter that the kind does not have or lacks, or a shape that cannot be.
     """
-    found = _TEXT.fullmatch(text.strip())
-    if found is None:
-        raise ToolError(
-            f'tool "{text}": expected kind, diameter, corner radius and taper, as "ball D8", "flat D10", '
-            '"bull D10 rc1" or "taper D6 rc1 5deg"'
-        )
-    kind = _KINDS[found[1].lower()]
-    corner, taper = found[3], found[4]
-    if (kind in ("flat", "ball") and corner) or (kind == "bull" and not corner) or ((kind == "taper") != bool(taper)):
-        raise ToolError(f'tool "{text}": bull needs a corner radius, taper a half angle; flat and ball take neither')
-    diameter = float(found[2])
-    flute = 3.0 * diameter if flute_length_mm is None else flute_length_mm
-    return tool_shape(kind, diameter, flute, float(corner or 0.0), float(taper or 0.0))
+    match = _TEXT.fullmatch(text.strip())
+    kind = match[1].lower() if match else ""
+    if match is None or kind not in _KINDS:
+        raise ToolError(f'tool "{text}"; {_EXPECTED}')
+    words = [_word(w.lower()) for w in match[3].split()]
+    values = dict(words)
+    needed, allowed = _NEEDS[kind]
+    if len(values) != len(words) or not needed <= set(values) <= needed | allowed:
+        raise ToolError(f'tool "{text}"; {_EXPECTED}')
+    diameter = float(match[2])
+    flutes = values.get("l", _FLUTES * diameter if flute_length_mm is None else flute_length_mm)
+    try:
+        return tool_shape(_KINDS[kind], diameter, flutes, values.get("r", 0.0), values.get("a", 0.0))
+    except ToolError as error:
+        raise ToolError(f'tool "{text}": {error}') from error
+
+
+def _word(word: str) -> tuple[str, float]:
+    """A letter and its value: ``r2``, ``rc2``, ``a5``, ``5deg``."""
+    if word.endswith("deg"):
+        return "a", float(word[:-3])
+    return word[0], float(word.removeprefix("rc") if word.startswith("rc") else word[1:])
+
+
+def tool_text(shape: ToolShape) -> str:
+    """A tool in the words that `parse_tool` reads, without the length of its flutes."""
+    diameter = f"{2.0 * shape.nominal_radius_mm:g}"
+    if shape.taper_rad > 0.0:
+        from math import degrees
+
+        corner = f" r{shape.corner_mm:g}" if shape.corner_mm else ""
+        return f"taper {diameter} a{degrees(shape.taper_rad):g}{corner}"
+    if shape.corner_mm == 0.0:
+        return f"flat {diameter}"
+    return f"ball {diameter}" if shape.disc_mm == 0.0 else f"bull {diameter} r{shape.corner_mm:g}"

@@ -1,0 +1,194 @@
+"""Stock as vertical dexels: one height for each place of a plan grid, lowered exactly by moving tools.
+
+A part milled along z without undercuts has one height over each plan point, and so has its stock at every stage: one
+number a dexel says all. A height is the true one at the dexel's own place, to rounding; between dexels nothing is
+known. Whatever stands above a tool is taken away with it, shank and holder are not looked at.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from twin.arrays import FloatArray, frozen
+from twin.cam import dexel_kernels as kernels
+from twin.cam.threads import PARTS, run_all
+from twin.errors import StockError
+from twin.motion.path import Move
+from twin.tools.shape import ToolShape
+
+#: Arcs that are not level are cut as chords that stand off them by at most this.
+CHORD_MM = 1e-4
+#: Most dexels a model may have.
+_MOST = 400_000_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ToolPath:
+    """Motions of one tool's tip, in any order.
+
+    Attributes:
+        starts_mm, ends_mm: shape (k, 3), straight motions.
+        arcs: shape (a, 8), level arcs: centre x, y, tip z, radius, start angle, signed sweep, end x, y.
+    """
+
+    starts_mm: FloatArray
+    ends_mm: FloatArray
+    arcs: FloatArray
+
+    @classmethod
+    def through(cls, points_mm: ArrayLike) -> ToolPath:
+        """Straight motions through points, shape (n, 3)."""
+        points = frozen(points_mm, "points_mm", (None, 3))
+        return cls(points[:-1], points[1:], np.empty((0, 8)))
+
+    @classmethod
+    def of_moves(cls, moves: Iterable[Move], chord_mm: float = CHORD_MM) -> ToolPath:
+        """The motions of moves, whatever their tool; dwells count as a stay at one place."""
+        lines: list[FloatArray] = []
+        arcs: list[FloatArray] = []
+        for move in moves:
+            level = _level_arc(move)
+            if level is not None:
+                arcs.append(level)
+                continue
+            corners = move.corners_mm(math.inf, chord_mm)
+            lines.append(np.concatenate((corners[:-1], corners[1:]), axis=1))
+        ends = np.concatenate(lines) if lines else np.empty((0, 6))
+        return cls(
+            np.ascontiguousarray(ends[:, :3]),
+            np.ascontiguousarray(ends[:, 3:]),
+            np.array(arcs, dtype=np.float64).reshape(-1, 8),
+        )
+
+
+class Dexels:
+    """Stock as heights over a grid; dexel (i, j) stands at low + ((i, j) + 1/2) pitch.
+
+    Args:
+        low_mm, high_mm: corners of the plan, shape (2,).
+        pitch_mm: distance of dexels; made a little smaller where it does not divide the plan.
+        top_mm: height of the stock, a number or one for each dexel.
+        floor_mm: its underside; heights never go below.
+
+    Raises:
+        StockError: a plan without extent, a pitch that cannot be, or a top below the floor.
+    """
+
+    def __init__(
+        self,
+        low_mm: ArrayLike,
+        high_mm: ArrayLike,
+        pitch_mm: float,
+        top_mm: ArrayLike,
+        floor_mm: float = -math.inf,
+    ) -> None:
+        self.low_mm, self.high_mm = frozen(low_mm, "low_mm", (2,)), frozen(high_mm, "high_mm", (2,))
+        extent = self.high_mm - self.low_mm
+        if not (extent > 0.0).all():
+            raise StockError(f"dexels: plan from {self.low_mm} to {self.high_mm}; expected an extent above 0")
+        if not (math.isfinite(pitch_mm) and pitch_mm > 0.0):
+            raise StockError(f"dexels: pitch_mm = {pitch_mm:g}; expected a number above 0")
+        nx, ny = (max(1, math.ceil(e / pitch_mm - 1e-9)) for e in extent)
+        if nx * ny > _MOST:
+            raise StockError(f"dexels: pitch_mm = {pitch_mm:g} makes {nx} x {ny} dexels; expected at most {_MOST}")
+        self.pitch_mm: FloatArray = extent / (nx, ny)
+        self.floor_mm = float(floor_mm)
+        self.heights_mm: FloatArray = np.empty((nx, ny))
+        self.heights_mm[:] = top_mm
+        if not (self.heights_mm >= self.floor_mm).all():
+            raise StockError(f"dexels: top_mm below floor_mm = {floor_mm:g}; expected a top not below the floor")
+        self._maxima = np.empty((-(-nx // kernels.BLOCK), -(-ny // kernels.BLOCK)))
+        kernels.block_maxima(self.heights_mm, self._maxima)
+
+    @property
+    def x_mm(self) -> FloatArray:
+        """Places of dexels along x, shape (nx,)."""
+        return np.asarray(self.low_mm[0] + (np.arange(self.heights_mm.shape[0]) + 0.5) * self.pitch_mm[0])
+
+    @property
+    def y_mm(self) -> FloatArray:
+        """Places of dexels along y, shape (ny,)."""
+        return np.asarray(self.low_mm[1] + (np.arange(self.heights_mm.shape[1]) + 0.5) * self.pitch_mm[1])
+
+    @property
+    def points_mm(self) -> FloatArray:
+        """Plan places of all dexels in the order of ``heights_mm.ravel()``, shape (nx ny, 2)."""
+        x, y = np.meshgrid(self.x_mm, self.y_mm, indexing="ij")
+        return np.column_stack((x.ravel(), y.ravel()))
+
+    @property
+    def cell_mm2(self) -> float:
+        """Plan area of one dexel."""
+        return float(self.pitch_mm[0] * self.pitch_mm[1])
+
+    def copy(self) -> Dexels:
+        """A model of its own with the same heights."""
+        other = object.__new__(Dexels)
+        other.low_mm, other.high_mm, other.pitch_mm, other.floor_mm = (
+            self.low_mm,
+            self.high_mm,
+            self.pitch_mm,
+            self.floor_mm,
+        )
+        other.heights_mm, other._maxima = self.heights_mm.copy(), self._maxima.copy()
+        return other
+
+    def volume_above_mm3(self, z_mm: ArrayLike) -> float:
+        """Volume between heights, one or shape (nx, ny), and the stock where it stands higher."""
+        return float(np.maximum(self.heights_mm - np.asarray(z_mm), 0.0).sum()) * self.cell_mm2
+
+    def cut(self, tool: ToolShape, path: ToolPath, threads: int | None = None) -> None:
+        """Lower the heights to the underside of a tool moving along a path.
+
+        Args:
+            threads: how many work, None for all cores; heights do not depend on it.
+        """
+        shape = tool.parameters
+        frame = np.array([self.x_mm[0], self.y_mm[0], *self.pitch_mm])
+        rows = self._maxima.shape[0]
+        bounds = [rows * k // PARTS for k in range(PARTS + 1)]
+        bands = [(a, b) for a, b in zip(bounds, bounds[1:], strict=False) if b > a]
+        stock = (self.heights_mm, self._maxima, frame, shape)
+        run_all([partial(kernels.cut_lines, *stock, path.starts_mm, path.ends_mm, *band) for band in bands], threads)
+        run_all([partial(kernels.cut_arcs, *stock, path.arcs, *band) for band in bands], threads)
+        np.maximum(self.heights_mm, self.floor_mm, out=self.heights_mm)
+        np.maximum(self._maxima, self.floor_mm, out=self._maxima)
+
+    def cut_moves(
+        self,
+        moves: Iterable[Move],
+        tools: Mapping[int, ToolShape],
+        *,
+        chord_mm: float = CHORD_MM,
+        threads: int | None = None,
+    ) -> None:
+        """Lower the heights by moves of several tools; motions without a tool, or with tool 0, cut nothing.
+
+        Rapid motions cut as well: what they pass through is gone. Level arcs are exact; of other arcs the chords cut,
+        which stand off by at most ``chord_mm``.
+        """
+        by_tool: dict[int, list[Move]] = {}
+        for move in moves:
+            if move.tool in tools:
+                by_tool.setdefault(move.tool, []).append(move)
+        for number, own in by_tool.items():
+            self.cut(tools[number], ToolPath.of_moves(own, chord_mm), threads)
+
+
+def _level_arc(move: Move) -> FloatArray | None:
+    """A level arc of even radius as kernels take it; None for all other motions."""
+    arc = move.arc
+    if arc is None or arc.plane != 17 or move.start_mm[2] != move.end_mm[2]:
+        return None
+    start, end = move.start_mm[:2] - arc.centre_mm[:2], move.end_mm[:2] - arc.centre_mm[:2]
+    radius = float(np.hypot(*start))
+    if abs(float(np.hypot(*end)) - radius) > 1e-9 * max(1.0, radius):
+        return None
+    begin = math.atan2(start[1], start[0])
+    return np.array([*arc.centre_mm[:2], move.start_mm[2], radius, begin, arc.sweep_rad, *move.end_mm[:2]])

@@ -1,0 +1,369 @@
+"""Lower envelope of moving tools over a grid of vertical dexels; compiled.
+
+Heights are cut block by block, 8 x 8 dexels each, with the block's largest height kept beside: a block that the tool
+passes above is left after one comparison. Each dexel takes the smallest of its height and the sweep's, so order and
+parts do not matter. ``tool`` is `twin.tools.shape.ToolShape.parameters`: disc, corner, tan(taper), arc radius, arc
+height, height, radius.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from twin.arrays import FloatArray
+
+#: Dexels along a block's side.
+BLOCK = 8
+
+
+@njit(cache=True, nogil=True)
+def _profile(tool: FloatArray, rho: float) -> float:
+    """Height of the tool's surface above the tip at a distance from the axis, at most the radius."""
+    if rho <= tool[0]:
+        return 0.0
+    if rho <= tool[3]:
+        d = rho - tool[0]
+        return tool[1] - math.sqrt(max(0.0, tool[1] * tool[1] - d * d))
+    if tool[2] > 0.0:
+        return tool[4] + (rho - tool[3]) / tool[2]
+    return tool[4]
+
+
+@njit(cache=True, nogil=True)
+def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> float:
+    """s in [0, limit] with the largest slope s - h(sqrt(q q + s s)), slope >= 0 and h the convex meridian.
+
+    On the corner arc the angle kappa of the normal is found by Newton steps kept in a bracket; elsewhere it is closed.
+    """
+    disc, corner, tangent, arc = tool[0], tool[1], tool[2], tool[3]
+    flat = math.sqrt(max(0.0, disc * disc - q * q))
+    if slope == 0.0:
+        return 0.0
+    if q < arc and corner > 0.0:
+        end = math.sqrt(arc * arc - q * q)
+        wall = math.inf if tangent == 0.0 else 1.0 / tangent
+        if wall * end / arc >= slope:
+            low = math.asin(min(1.0, max(0.0, (q - disc) / corner)))
+            high = 0.5 * math.pi - math.atan(tangent)
+            kappa = 0.5 * (low + high)
+            for _ in range(60):
+                sine, cosine = math.sin(kappa), math.cos(kappa)
+                rho = disc + corner * sine
+                along = math.sqrt(max(0.0, rho * rho - q * q))
+                value = sine * along - slope * rho * cosine
+                if value > 0.0:
+                    high = kappa
+                else:
+                    low = kappa
+                turn = corner * cosine
+                rise = cosine * along + slope * (rho * sine - turn * cosine)
+                if along > 0.0:
+                    rise += sine * rho * turn / along
+                following = kappa - value / rise if rise > 0.0 and along > 0.0 else -1.0
+                if not low < following < high:
+                    following = 0.5 * (low + high)
+                done = abs(following - kappa) < 1e-13
+                kappa = following
+                if done:
+                    break
+            rho = disc + corner * math.sin(kappa)
+            return min(limit, math.sqrt(max(0.0, rho * rho - q * q)))
+        flat = end
+    if tangent > 0.0:
+        wall = 1.0 / tangent
+        if slope < wall:
+            return min(limit, max(flat, slope * q / math.sqrt(wall * wall - slope * slope)))
+        return limit
+    return min(limit, flat)
+
+
+@njit(cache=True, nogil=True)
+def block_maxima(heights: FloatArray, maxima: FloatArray) -> None:
+    """Largest height of every block, shape (blocks along x, blocks along y)."""
+    for i in range(maxima.shape[0]):
+        for j in range(maxima.shape[1]):
+            maxima[i, j] = heights[i * BLOCK : (i + 1) * BLOCK, j * BLOCK : (j + 1) * BLOCK].max()
+
+
+@njit(cache=True, nogil=True)
+def _ball_block(
+    heights: FloatArray,
+    ex0: float,
+    ey0: float,
+    pitch_x: float,
+    pitch_y: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    centre: float,
+    radius: float,
+    largest: FloatArray,
+) -> None:
+    """Cut one block by a ball on a line; e is the first dexel seen from the start, ``centre`` the ball's start height.
+
+    The ball's lower side over a dexel is the least of centre + dz t - sqrt(rest - S (t - middle)^2); S the square of
+    the level length, rest that of half the chord of the swept disc. Its minimum lies at ``best``.
+    """
+    square = dx * dx + dy * dy
+    inverse = 1.0 / square if square > 0.0 else 0.0
+    root_inverse = math.sqrt(inverse)
+    lead = dz * math.sqrt(inverse / (square + dz * dz)) if square > 0.0 else 0.0
+    if square == 0.0:
+        centre = centre + min(0.0, dz)
+        dz = 0.0
+    r2 = radius * radius
+    for i in range(heights.shape[0]):
+        ex = ex0 + i * pitch_x
+        for j in range(heights.shape[1]):
+            ey = ey0 + j * pitch_y
+            cross = ex * dy - ey * dx
+            away = cross * cross * inverse if square > 0.0 else ex * ex + ey * ey
+            rest = r2 - away
+            inside = max(rest, 0.0)
+            root = math.sqrt(inside)
+            middle = (ex * dx + ey * dy) * inverse
+            first = max(0.0, middle - root * root_inverse)
+            last = min(1.0, middle + root * root_inverse)
+            t = min(max(middle - lead * root, first), last)
+            off = t - middle
+            z = centre + dz * t - math.sqrt(max(0.0, inside - square * off * off))
+            old = heights[i, j]
+            new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
+            heights[i, j] = new
+            largest[j] = max(largest[j], new)
+
+
+@njit(cache=True, nogil=True)
+def _flat_block(
+    heights: FloatArray,
+    ex0: float,
+    ey0: float,
+    pitch_x: float,
+    pitch_y: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    tip: float,
+    radius: float,
+    largest: FloatArray,
+) -> None:
+    """Cut one block by a flat tool on a line: the lower end of the time in which its disc covers the dexel."""
+    square = dx * dx + dy * dy
+    inverse = 1.0 / square if square > 0.0 else 0.0
+    if square == 0.0:
+        tip = tip + min(0.0, dz)
+        dz = 0.0
+    r2 = radius * radius
+    for i in range(heights.shape[0]):
+        ex = ex0 + i * pitch_x
+        for j in range(heights.shape[1]):
+            ey = ey0 + j * pitch_y
+            cross = ex * dy - ey * dx
+            away = cross * cross * inverse if square > 0.0 else ex * ex + ey * ey
+            rest = r2 - away
+            half = math.sqrt(max(rest, 0.0) * inverse)
+            middle = (ex * dx + ey * dy) * inverse
+            first = max(0.0, middle - half)
+            last = min(1.0, middle + half)
+            z = tip + dz * (first if dz > 0.0 else last)
+            old = heights[i, j]
+            new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
+            heights[i, j] = new
+            largest[j] = max(largest[j], new)
+
+
+@njit(cache=True, nogil=True)
+def _round_block(
+    heights: FloatArray,
+    ex0: float,
+    ey0: float,
+    pitch_x: float,
+    pitch_y: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    tip: float,
+    tool: FloatArray,
+    largest: FloatArray,
+) -> None:
+    """Cut one block by any tool on a line; the place along it is searched only where the sweep can be low enough."""
+    square = dx * dx + dy * dy
+    length = math.sqrt(square)
+    radius = tool[6]
+    for i in range(heights.shape[0]):
+        ex = ex0 + i * pitch_x
+        for j in range(heights.shape[1]):
+            ey = ey0 + j * pitch_y
+            old = heights[i, j]
+            largest[j] = max(largest[j], old)
+            if square == 0.0:
+                away = math.sqrt(ex * ex + ey * ey)
+                if away <= radius:
+                    heights[i, j] = min(old, tip + min(0.0, dz) + _profile(tool, away))
+                continue
+            q = abs(ex * dy - ey * dx) / length
+            rest = radius * radius - q * q
+            if rest < 0.0:
+                continue
+            root = math.sqrt(rest)
+            foot = (ex * dx + ey * dy) / length
+            # places s from the foot of the dexel on the line
+            low, high = max(-foot, -root), min(length - foot, root)
+            if low > high:
+                continue
+            slope = dz / length
+            nearest = min(max(0.0, low), high)
+            floor = tip + (foot + (low if dz > 0.0 else high)) * slope
+            if floor + _profile(tool, min(radius, math.sqrt(q * q + nearest * nearest))) >= old:
+                continue
+            s = nearest
+            if dz != 0.0:
+                s = _resting_place(tool, abs(slope), q, root)
+                s = min(max(-s if slope > 0.0 else s, low), high)
+            z = tip + (foot + s) * slope + _profile(tool, min(radius, math.sqrt(q * q + s * s)))
+            if z < old:
+                heights[i, j] = z
+
+
+@njit(cache=True, nogil=True)
+def cut_lines(
+    heights: FloatArray,
+    maxima: FloatArray,
+    frame: FloatArray,
+    tool: FloatArray,
+    starts: FloatArray,
+    ends: FloatArray,
+    first_band: int,
+    last_band: int,
+) -> None:
+    """Cut the blocks of rows ``first_band`` to ``last_band - 1`` by a tool on straight lines.
+
+    Args:
+        heights: shape (nx, ny), in place.
+        maxima: shape (blocks along x, blocks along y), largest height of each block, kept.
+        frame: x and y of the first dexel, pitch along x and y.
+        starts, ends: shape (k, 3), tool tip.
+    """
+    radius = tool[6]
+    ball = tool[0] == 0.0 and tool[2] == 0.0
+    flat = tool[1] == 0.0 and tool[2] == 0.0
+    side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
+    reach_x, reach_y = 0.5 * (BLOCK - 1) * frame[2], 0.5 * (BLOCK - 1) * frame[3]
+    diagonal = math.hypot(reach_x, reach_y) * (1.0 + 1e-12)
+    largest = np.empty(BLOCK)
+    for k in range(len(starts)):
+        x0, y0, z0 = starts[k, 0], starts[k, 1], starts[k, 2]
+        dx, dy, dz = ends[k, 0] - x0, ends[k, 1] - y0, ends[k, 2] - z0
+        left = max(first_band, int(math.floor((x0 + min(0.0, dx) - radius - frame[0]) / side_x)))
+        right = min(last_band - 1, int(math.floor((x0 + max(0.0, dx) + radius - frame[0]) / side_x)))
+        bottom = max(0, int(math.floor((y0 + min(0.0, dy) - radius - frame[1]) / side_y)))
+        top = min(maxima.shape[1] - 1, int(math.floor((y0 + max(0.0, dy) + radius - frame[1]) / side_y)))
+        square = dx * dx + dy * dy
+        inverse = 1.0 / square if square > 0.0 else 0.0
+        window = (radius + diagonal) * math.sqrt(inverse)
+        for i in range(left, right + 1):
+            ex0 = frame[0] + i * side_x - x0
+            for j in range(bottom, top + 1):
+                old = maxima[i, j]
+                if old <= z0 and old <= z0 + dz:
+                    continue
+                ey0 = frame[1] + j * side_y - y0
+                ex, ey = ex0 + reach_x, ey0 + reach_y
+                middle = (ex * dx + ey * dy) * inverse
+                t = min(max(middle, 0.0), 1.0)
+                away2 = (ex - t * dx) ** 2 + (ey - t * dy) ** 2
+                if away2 > (radius + diagonal) ** 2:
+                    continue
+                lowest = z0
+                if square == 0.0:
+                    lowest += min(0.0, dz)
+                elif dz > 0.0:
+                    lowest += dz * min(max(middle - window, 0.0), 1.0)
+                else:
+                    lowest += dz * min(max(middle + window, 0.0), 1.0)
+                near = max(0.0, math.sqrt(away2) - diagonal)
+                if lowest + _profile(tool, min(near, radius)) >= old:
+                    continue
+                block = heights[i * BLOCK : (i + 1) * BLOCK, j * BLOCK : (j + 1) * BLOCK]
+                largest[:] = -math.inf
+                if ball:
+                    _ball_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0 + radius, radius, largest)
+                elif flat:
+                    _flat_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, radius, largest)
+                else:
+                    _round_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, largest)
+                maxima[i, j] = largest.max()
+
+
+@njit(cache=True, nogil=True)
+def cut_arcs(
+    heights: FloatArray,
+    maxima: FloatArray,
+    frame: FloatArray,
+    tool: FloatArray,
+    arcs: FloatArray,
+    first_band: int,
+    last_band: int,
+) -> None:
+    """The same for level arcs: a tool at one height stands nearest to a dexel where the arc does.
+
+    Args:
+        arcs: shape (k, 8): centre x, y, tip z, radius of the path, start angle, signed sweep, x and y of the end.
+    """
+    radius = tool[6]
+    side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
+    reach_x, reach_y = 0.5 * (BLOCK - 1) * frame[2], 0.5 * (BLOCK - 1) * frame[3]
+    diagonal = math.hypot(reach_x, reach_y) * (1.0 + 1e-12)
+    for k in range(len(arcs)):
+        cx, cy, z0, path = arcs[k, 0], arcs[k, 1], arcs[k, 2], arcs[k, 3]
+        begin, sweep = arcs[k, 4], arcs[k, 5]
+        sx, sy = cx + path * math.cos(begin), cy + path * math.sin(begin)
+        far = path + radius
+        left = max(first_band, int(math.floor((cx - far - frame[0]) / side_x)))
+        right = min(last_band - 1, int(math.floor((cx + far - frame[0]) / side_x)))
+        bottom = max(0, int(math.floor((cy - far - frame[1]) / side_y)))
+        top = min(maxima.shape[1] - 1, int(math.floor((cy + far - frame[1]) / side_y)))
+        for i in range(left, right + 1):
+            for j in range(bottom, top + 1):
+                old = maxima[i, j]
+                if old <= z0:
+                    continue
+                x, y = frame[0] + i * side_x + reach_x, frame[1] + j * side_y + reach_y
+                near = max(0.0, _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7]) - diagonal)
+                if near > radius or z0 + _profile(tool, near) >= old:
+                    continue
+                largest = -math.inf
+                for a in range(i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])):
+                    for b in range(j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])):
+                        x, y = frame[0] + a * frame[2], frame[1] + b * frame[3]
+                        off = _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7])
+                        if off <= radius:
+                            heights[a, b] = min(heights[a, b], z0 + _profile(tool, off))
+                        largest = max(largest, heights[a, b])
+                maxima[i, j] = largest
+
+
+@njit(cache=True, nogil=True)
+def _from_arc(
+    x: float,
+    y: float,
+    cx: float,
+    cy: float,
+    path: float,
+    begin: float,
+    sweep: float,
+    sx: float,
+    sy: float,
+    ex: float,
+    ey: float,
+) -> float:
+    """Distance of a point from an arc in the plan."""
+    ends = math.sqrt(min((x - sx) ** 2 + (y - sy) ** 2, (x - ex) ** 2 + (y - ey) ** 2))
+    turn = math.atan2(y - cy, x - cx) - begin
+    turn = turn % (2.0 * math.pi) if sweep > 0.0 else (-turn) % (2.0 * math.pi)
+    if turn <= abs(sweep):
+        return min(ends, abs(math.hypot(x - cx, y - cy) - path))
+    return ends

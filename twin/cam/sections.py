@@ -1,0 +1,105 @@
+"""A part's sections: evenly spaced slices in three directions, and more of them where faces lie across a direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from twin.arrays import FloatArray
+from twin.geometry.region import Region
+from twin.geometry.slicing import mesh_sections
+from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
+from twin.workpiece.stock import SliceSet
+from twin.workpiece.store import PLANE_AXES
+
+#: A face lies across an axis when its normal has at least this component along it.
+_ACROSS = 1.0 - 1e-9
+#: Sections of such faces are cut this far inside the material, and stand for the face itself.
+_INSIDE_MM = 2e-5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Sections:
+    """Sections across one axis at any positions.
+
+    Attributes:
+        axis: 0, 1, 2 for planes normal to x, y, z.
+        positions_mm: shape (n,), increasing.
+        regions: one a position.
+    """
+
+    axis: int
+    positions_mm: FloatArray
+    regions: tuple[Region, ...]
+
+    @classmethod
+    def of(cls, slices: SliceSet, axis: int) -> Sections:
+        """One direction of a set of slices."""
+        return cls(axis=axis, positions_mm=slices.positions_mm(axis), regions=slices.regions[axis])
+
+    def joined(self, other: Sections) -> Sections:
+        """The sections of both, by position."""
+        positions = np.concatenate((self.positions_mm, other.positions_mm))
+        order = np.argsort(positions, kind="stable")
+        regions = self.regions + other.regions
+        return Sections(axis=self.axis, positions_mm=positions[order], regions=tuple(regions[i] for i in order))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SlicedPart:
+    """A part as slices, with what slices alone would miss.
+
+    Attributes:
+        mesh: the solid that was cut.
+        slices: evenly spaced sections in three directions.
+        faces: for every axis, sections just inside of the faces that lie across it. Even slices know such a face to half
+            a pitch only; with these it is known exactly.
+    """
+
+    mesh: Solid
+    slices: SliceSet
+    faces: tuple[Sections, Sections, Sections]
+
+    def sections(self, axis: int) -> Sections:
+        """Even slices and those of faces, together."""
+        return Sections.of(self.slices, axis).joined(self.faces[axis])
+
+
+def slice_part(part: Path | str | Solid, pitch_mm: float) -> SlicedPart:
+    """Slice a part in three directions.
+
+    Args:
+        part: an STL file, or a solid.
+        pitch_mm: largest distance of the planes, which lie at low + (k + 1/2) pitch.
+
+    Raises:
+        MeshError: no solid.
+        StockError: a pitch that cannot be.
+    """
+    mesh = part if isinstance(part, Solid) else load_mesh(part)
+    slices = mesh_slices(mesh, pitch_mm)
+    x, y, z = (face_sections(mesh, axis) for axis in range(3))
+    return SlicedPart(mesh=mesh, slices=slices, faces=(x, y, z))
+
+
+def face_sections(mesh: Solid, axis: int) -> Sections:
+    """Sections at the faces that lie across an axis, cut just inside the material."""
+    low, high = face_levels(mesh, axis)
+    cuts = np.concatenate((low + _INSIDE_MM, high - _INSIDE_MM))
+    positions = np.concatenate((low, high))
+    order = np.argsort(cuts, kind="stable")
+    u, v = PLANE_AXES[axis]
+    regions = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (axis, u, v), cuts[order])
+    return Sections(axis=axis, positions_mm=positions[order], regions=regions)
+
+
+def face_levels(mesh: Solid, axis: int) -> tuple[FloatArray, FloatArray]:
+    """Positions of faces across an axis: those with material above them, and those with material below."""
+    a, b, c = (mesh.vertices_mm[mesh.triangles[:, i]] for i in range(3))
+    cross = np.cross(b - a, c - a)
+    size = np.linalg.norm(cross, axis=1)
+    flat = (np.abs(cross[:, axis]) >= _ACROSS * size) & (size > 0.0)
+    heights, up = a[flat, axis], cross[flat, axis] > 0.0
+    return np.unique(heights[~up]), np.unique(heights[up])
