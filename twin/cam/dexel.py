@@ -9,62 +9,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from twin.arrays import FloatArray, frozen
 from twin.cam import dexel_kernels as kernels
+from twin.cam.strokes import CHORD_MM, Strokes
 from twin.cam.threads import PARTS, run_all
 from twin.errors import StockError
 from twin.motion.path import Move
 from twin.tools.shape import ToolShape
 
-#: Arcs that are not level are cut as chords that stand off them by at most this.
-CHORD_MM = 1e-4
 #: Most dexels a model may have.
 _MOST = 400_000_000
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ToolPath:
-    """Motions of one tool's tip, in any order.
-
-    Attributes:
-        starts_mm, ends_mm: shape (k, 3), straight motions.
-        arcs: shape (a, 8), level arcs: centre x, y, tip z, radius, start angle, signed sweep, end x, y.
-    """
-
-    starts_mm: FloatArray
-    ends_mm: FloatArray
-    arcs: FloatArray
-
-    @classmethod
-    def through(cls, points_mm: ArrayLike) -> ToolPath:
-        """Straight motions through points, shape (n, 3)."""
-        points = frozen(points_mm, "points_mm", (None, 3))
-        return cls(points[:-1], points[1:], np.empty((0, 8)))
-
-    @classmethod
-    def of_moves(cls, moves: Iterable[Move], chord_mm: float = CHORD_MM) -> ToolPath:
-        """The motions of moves, whatever their tool; dwells count as a stay at one place."""
-        lines: list[FloatArray] = []
-        arcs: list[FloatArray] = []
-        for move in moves:
-            level = _level_arc(move)
-            if level is not None:
-                arcs.append(level)
-                continue
-            corners = move.corners_mm(math.inf, chord_mm)
-            lines.append(np.concatenate((corners[:-1], corners[1:]), axis=1))
-        ends = np.concatenate(lines) if lines else np.empty((0, 6))
-        return cls(
-            np.ascontiguousarray(ends[:, :3]),
-            np.ascontiguousarray(ends[:, 3:]),
-            np.array(arcs, dtype=np.float64).reshape(-1, 8),
-        )
 
 
 class Dexels:
@@ -143,8 +103,8 @@ class Dexels:
         """Volume between heights, one or shape (nx, ny), and the stock where it stands higher."""
         return float(np.maximum(self.heights_mm - np.asarray(z_mm), 0.0).sum()) * self.cell_mm2
 
-    def cut(self, tool: ToolShape, path: ToolPath, threads: int | None = None) -> None:
-        """Lower the heights to the underside of a tool moving along a path.
+    def cut(self, tool: ToolShape, strokes: Strokes, threads: int | None = None) -> None:
+        """Lower the heights to the underside of a tool moving along strokes.
 
         Args:
             threads: how many work, None for all cores; heights do not depend on it.
@@ -153,10 +113,12 @@ class Dexels:
         frame = np.array([self.x_mm[0], self.y_mm[0], *self.pitch_mm])
         rows = self._maxima.shape[0]
         bounds = [rows * k // PARTS for k in range(PARTS + 1)]
-        bands = [(a, b) for a, b in zip(bounds, bounds[1:], strict=False) if b > a]
+        bands = [(a, b) for a, b in pairwise(bounds) if b > a]
         stock = (self.heights_mm, self._maxima, frame, shape)
-        run_all([partial(kernels.cut_lines, *stock, path.starts_mm, path.ends_mm, *band) for band in bands], threads)
-        run_all([partial(kernels.cut_arcs, *stock, path.arcs, *band) for band in bands], threads)
+        run_all(
+            [partial(kernels.cut_lines, *stock, strokes.starts_mm, strokes.ends_mm, *band) for band in bands], threads
+        )
+        run_all([partial(kernels.cut_arcs, *stock, strokes.arcs, *band) for band in bands], threads)
         np.maximum(self.heights_mm, self.floor_mm, out=self.heights_mm)
         np.maximum(self._maxima, self.floor_mm, out=self._maxima)
 
@@ -178,17 +140,4 @@ class Dexels:
             if move.tool in tools:
                 by_tool.setdefault(move.tool, []).append(move)
         for number, own in by_tool.items():
-            self.cut(tools[number], ToolPath.of_moves(own, chord_mm), threads)
-
-
-def _level_arc(move: Move) -> FloatArray | None:
-    """A level arc of even radius as kernels take it; None for all other motions."""
-    arc = move.arc
-    if arc is None or arc.plane != 17 or move.start_mm[2] != move.end_mm[2]:
-        return None
-    start, end = move.start_mm[:2] - arc.centre_mm[:2], move.end_mm[:2] - arc.centre_mm[:2]
-    radius = float(np.hypot(*start))
-    if abs(float(np.hypot(*end)) - radius) > 1e-9 * max(1.0, radius):
-        return None
-    begin = math.atan2(start[1], start[0])
-    return np.array([*arc.centre_mm[:2], move.start_mm[2], radius, begin, arc.sweep_rad, *move.end_mm[:2]])
+            self.cut(tools[number], Strokes.of_moves(own, chord_mm), threads)

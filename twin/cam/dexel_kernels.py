@@ -34,7 +34,7 @@ def _profile(tool: FloatArray, rho: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> float:
-    """s in [0, limit] with the largest slope s - h(sqrt(q q + s s)), slope >= 0 and h the convex meridian.
+    """S in [0, limit] with the largest slope s - h(sqrt(q q + s s)), slope >= 0 and h the convex meridian.
 
     On the corner arc the angle kappa of the normal is found by Newton steps kept in a bracket; elsewhere it is closed.
     """

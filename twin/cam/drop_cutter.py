@@ -222,13 +222,18 @@ class DropCutter:
     ) -> None:
         surface, tool = self.surface, self._parameters
         faces, edges, vertices = len(self._faces), len(self._edges), len(surface.vertices_mm)
-        bounds = [(n * part // _LIST_PARTS, n * (part + 1) // _LIST_PARTS) for n in (faces, edges, vertices)]
-        where = (frame, columns, rows, fill, counts, entries)
-        kernels.list_faces(surface.vertices_mm, surface.triangles, self._faces, *bounds[0], *where)
-        if self.tool is None:
-            return
-        kernels.list_edges(self._edges, surface.edge_cones_rad, *bounds[1], faces, tool, *where)
-        kernels.list_vertices(surface.vertices_mm, surface.vertex_cones, *bounds[2], faces + edges, tool, *where)
+        (f0, f1), (e0, e1), (v0, v1) = [
+            (n * part // _LIST_PARTS, n * (part + 1) // _LIST_PARTS) for n in (faces, edges, vertices)
+        ]
+        list_faces = partial(kernels.list_faces, surface.vertices_mm, surface.triangles, self._faces, f0, f1)
+        list_edges = partial(kernels.list_edges, self._edges, surface.edge_cones_rad, e0, e1, faces, tool)
+        list_vertices = partial(
+            kernels.list_vertices, surface.vertices_mm, surface.vertex_cones, v0, v1, faces + edges, tool
+        )
+        list_faces(frame, columns, rows, fill, counts, entries)
+        if self.tool is not None:
+            list_edges(frame, columns, rows, fill, counts, entries)
+            list_vertices(frame, columns, rows, fill, counts, entries)
 
 
 def _plan_points(points_mm: ArrayLike) -> FloatArray:

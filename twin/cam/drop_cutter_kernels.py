@@ -225,8 +225,11 @@ def list_edges(
     counts: NDArray[np.int64],
     entries: NDArray[np.int32],
 ) -> None:
-    """Count edges ``first`` to ``last - 1`` in the cells of their patches, or list them; their elements begin at
-    ``number``."""
+    """Count edges ``first`` to ``last - 1`` in the cells of their patches, or list them.
+
+    Args:
+        number: number of the first such element.
+    """
     box, level, azimuth = np.empty(4), np.empty(4), np.zeros(4)
     for e in range(first, last):
         if cones[e, 0] > cones[e, 1]:
@@ -288,8 +291,11 @@ def list_vertices(
     counts: NDArray[np.int64],
     entries: NDArray[np.int32],
 ) -> None:
-    """Count vertices ``first`` to ``last - 1`` in the cells of their patches, or list them; their elements begin at
-    ``number``."""
+    """Count vertices ``first`` to ``last - 1`` in the cells of their patches, or list them.
+
+    Args:
+        number: number of the first such element.
+    """
     box, level, azimuth = np.empty(4), np.empty(4), np.empty(4)
     for v in range(first, last):
         if cones[v, 0] > cones[v, 1]:

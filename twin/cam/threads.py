@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 
 #: Parts that work is cut into; the same for any number of threads, so that results are the same too.
 PARTS = 8
@@ -17,7 +18,7 @@ def in_parts(work: Callable[[int, int], None], count: int, *, threads: int | Non
         threads: how many work, None for all cores.
     """
     bounds = [count * k // parts for k in range(parts + 1)]
-    run_all([_part(work, a, b) for a, b in zip(bounds, bounds[1:], strict=False) if b > a], threads)
+    run_all([_part(work, a, b) for a, b in pairwise(bounds) if b > a], threads)
 
 
 def run_all(tasks: list[Callable[[], None]], threads: int | None = None) -> None:
