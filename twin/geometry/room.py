@@ -77,3 +77,17 @@ def size_of(polygon: Area) -> float:
 def has_point(polygon: Area, point_mm: FloatArray) -> bool:
     """Whether a point lies inside a polygon."""
     return bool(shapely.contains_xy(polygon, point_mm[0], point_mm[1]))
+
+
+def rows_of(room: Room, spacing_mm: float) -> Iterator[list[FloatArray]]:
+    """What of lines along x lies in a room: for each row, from low y to high, its pieces from left to right."""
+    if room.empty:
+        return
+    x0, y0, x1, y1 = shapely.bounds(room.area).tolist()
+    count = max(1, int(np.ceil((y1 - y0) / spacing_mm - 1e-9)))
+    for k in range(count + 1):
+        y = min(max(y0 + k * (y1 - y0) / count, y0 + 1e-6), y1 - 1e-6)
+        line = shapely.LineString([(x0 - 1.0, y), (x1 + 1.0, y)])
+        parts = [p for p in shapely.get_parts(shapely.intersection(line, room.area)) if p.geom_type == "LineString"]
+        found = sorted((np.array(p.coords) for p in parts if p.length > _SLACK), key=lambda p: float(p[:, 0].min()))
+        yield [p if p[0, 0] <= p[-1, 0] else p[::-1] for p in found]
