@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 
@@ -367,3 +368,88 @@ def _from_arc(
     if turn <= abs(sweep):
         return min(ends, abs(math.hypot(x - cx, y - cy) - path))
     return ends
+
+
+@njit(cache=True, nogil=True)
+def rest_heights(
+    heights: FloatArray,
+    maxima: FloatArray,
+    frame: FloatArray,
+    tool: FloatArray,
+    points: FloatArray,
+    first: int,
+    last: int,
+    out: FloatArray,
+) -> None:
+    """Tip height over points ``first`` to ``last - 1`` at which a tool coming down touches the first dexel.
+
+    Args:
+        points: shape (m, 2).
+        out: shape (m,), filled; -inf where no dexel lies below the tool.
+    """
+    radius = tool[6]
+    side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
+    wide_x, wide_y = (BLOCK - 1) * frame[2], (BLOCK - 1) * frame[3]
+    for k in range(first, last):
+        px, py = points[k, 0], points[k, 1]
+        best = -math.inf
+        home_x = min(max(int(math.floor((px - frame[0]) / side_x)), 0), maxima.shape[0] - 1)
+        home_y = min(max(int(math.floor((py - frame[1]) / side_y)), 0), maxima.shape[1] - 1)
+        left = max(0, int(math.floor((px - radius - frame[0]) / side_x)))
+        right = min(maxima.shape[0] - 1, int(math.floor((px + radius - frame[0]) / side_x)))
+        bottom = max(0, int(math.floor((py - radius - frame[1]) / side_y)))
+        top = min(maxima.shape[1] - 1, int(math.floor((py + radius - frame[1]) / side_y)))
+        # the block below the tip first: it most often decides, and the others are left after one comparison
+        for at in range(-1, (right - left + 1) * (top - bottom + 1)):
+            i, j = home_x, home_y
+            if at >= 0:
+                i, j = left + at // (top - bottom + 1), bottom + at % (top - bottom + 1)
+            gap_x = max(0.0, frame[0] + i * side_x - px, px - frame[0] - i * side_x - wide_x)
+            gap_y = max(0.0, frame[1] + j * side_y - py, py - frame[1] - j * side_y - wide_y)
+            near = gap_x * gap_x + gap_y * gap_y
+            if near > radius * radius or maxima[i, j] <= best:
+                continue
+            if maxima[i, j] - _profile(tool, math.sqrt(near)) <= best:
+                continue
+            for a in range(i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])):
+                for b in range(j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])):
+                    if heights[a, b] <= best:
+                        continue
+                    away = (frame[0] + a * frame[2] - px) ** 2 + (frame[1] + b * frame[3] - py) ** 2
+                    if away <= radius * radius:
+                        best = max(best, heights[a, b] - _profile(tool, math.sqrt(away)))
+        out[k] = best
+
+
+@njit(cache=True, nogil=True)
+def thinned(points: FloatArray, spacing: float, chosen: NDArray[np.bool_]) -> None:
+    """Choose points, in their order, that stand at least ``spacing`` from all chosen before.
+
+    Args:
+        points: shape (m, 2).
+        chosen: shape (m,), filled.
+    """
+    if len(points) == 0:
+        return
+    low_x, low_y = points[:, 0].min(), points[:, 1].min()
+    columns = int((points[:, 0].max() - low_x) / spacing) + 1
+    rows = int((points[:, 1].max() - low_y) / spacing) + 1
+    head = np.full(columns * rows, -1, dtype=np.int64)
+    following = np.full(len(points), -1, dtype=np.int64)
+    for k in range(len(points)):
+        x, y = points[k, 0], points[k, 1]
+        column = min(columns - 1, int((x - low_x) / spacing))
+        row = min(rows - 1, int((y - low_y) / spacing))
+        free = True
+        for c in range(max(0, column - 1), min(columns, column + 2)):
+            for r in range(max(0, row - 1), min(rows, row + 2)):
+                other = head[c * rows + r]
+                while other >= 0 and free:
+                    if (points[other, 0] - x) ** 2 + (points[other, 1] - y) ** 2 < spacing * spacing:
+                        free = False
+                    other = following[other]
+        chosen[k] = free
+        if free:
+            cell = column * rows + row
+            following[k] = head[cell]
+            head[cell] = k
