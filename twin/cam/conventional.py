@@ -1,13 +1,12 @@
 """The chain to compare with: scanning lines throughout, air cuts left out, rows in their order (the mold paper, section 3).
 
-Every level is covered by rows along x, run to and fro. Neighbouring rows are joined on the level where nothing is in the
+Every level is covered by rows along x. Neighbouring rows are joined on the level where nothing is in the
 way; else the tool goes up and plunges.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from twin.cam.arc_fit import fit_path
 from twin.cam.dexel import Dexels
@@ -47,19 +46,22 @@ def row_cuts(
     return found
 
 
-def row_passes(levels: Sequence[LevelCuts]) -> Iterator[Pass]:
-    """Level by level, row by row, every second row the other way."""
+def row_passes(levels: Sequence[LevelCuts], *, one_way: bool) -> Iterator[Pass]:
+    """Level by level, row by row; every second row the other way, unless all shall run one way.
+
+    Rows go on towards +y, so the material is on the left of a row towards +x: one way is -x, which is climb milling.
+    """
     for number, one in enumerate(levels):
         rows: dict[int, list[Pass]] = {}
         for cut in one.cuts:
-            turned = cut.row % 2 == 1
+            turned = one_way or cut.row % 2 == 1
             points = cut.points_mm[::-1] if turned else cut.points_mm
             top = cut.top_mm[1 if turned else 0]
             rows.setdefault(cut.row, []).append(
                 Pass(points_mm=points, top_mm=top if top > one.z_mm else None, layer=number)
             )
         for row in sorted(rows):
-            yield from reversed(rows[row]) if row % 2 == 1 else rows[row]
+            yield from reversed(rows[row]) if one_way or row % 2 == 1 else rows[row]
 
 
 def scanned(
@@ -68,13 +70,15 @@ def scanned(
     options: RoughingOptions,
     levels: Sequence[LevelCuts],
     before: Dexels,
-    name: str,
+    *,
+    one_way: bool,
 ) -> ToolPath:
     """A path through rows.
 
     Args:
         levels: from `row_cuts`.
         before: the stock as the stage finds it.
+        one_way: whether all rows run one way, for climb milling.
     """
     linking = LinkOptions(
         safe_z_mm=space.safe_z_mm,
@@ -86,6 +90,6 @@ def scanned(
         low_links=True,
         entry="plunge",
     )
-    passes = list(row_passes(levels))
+    passes = list(row_passes(levels, one_way=one_way))
     moves = link(passes, linking, StockWay(levels, space.top_mm, before, tool)) if passes else ()
-    return replace(fit_path(ToolPath(moves=moves, tool=tool), FIT), name=name)
+    return fit_path(ToolPath(moves=moves, tool=tool, name="scanning rows"), FIT)

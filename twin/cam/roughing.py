@@ -36,12 +36,14 @@ class StageFeeds:
     """Feeds of one stage, mm/min.
 
     Attributes:
-        cut, plunge, link: in the cut, downwards, and on the way through cleared places.
+        cut, plunge, link: in the cut, straight down, and on the way through cleared places.
+        ramp: on helices and ramps into material.
     """
 
     cut: float
     plunge: float
     link: float
+    ramp: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -152,7 +154,7 @@ def contour_roughing(
         safe_z_mm=space.safe_z_mm,
         clearance_mm=space.clearance_mm,
         feed_mm_min=options.feeds.cut,
-        plunge_mm_min=options.feeds.plunge,
+        plunge_mm_min=options.feeds.ramp,  # straight down through air only
         link_mm_min=options.feeds.link,
         stay_down_mm=_STAY * options.radial_depth_mm,
         low_links=True,

@@ -25,6 +25,8 @@ _FIXED = -1e7
 #: Smallest gain that counts, s.
 _GAIN = 1e-9
 _MOST_SEGMENT = 50
+#: Moves in a row at one piece, against going round in circles by rounding.
+_MOST_MOVES = 1000
 
 
 @njit(cache=True, nogil=True)
@@ -83,8 +85,10 @@ def _sees(ax: float, ay: float, bx: float, by: float, clear: FloatArray, grid: F
 def link_s(
     e: int, f: int, ends: FloatArray, lift: FloatArray, speeds: FloatArray, clear: FloatArray, grid: FloatArray
 ) -> float:
-    """Time of the link from end e to end f."""
+    """Time of the link from end e to end f, the same to the last bit as that from f to e."""
     n = ends.shape[0]
+    if e > f:
+        e, f = f, e
     if e >= n or f >= n:
         return _FIXED if min(e, f) < 2 else 0.0
     ax, ay, bx, by = ends[e, 0], ends[e, 1], ends[f, 0], ends[f, 1]
@@ -417,7 +421,7 @@ def _settle(
         node = _pop(queue, waits)
         if 2 * node >= n_ends:
             continue
-        while True:
+        for _ in range(_MOST_MOVES):
             gain = _improve(
                 node, tour, back, place, near, soonest, ends, lift, speeds, clear, grid, two_way, log, queue, waits
             )
