@@ -152,6 +152,51 @@ def block_sizes() -> dict[str, float]:
     }
 
 
+def across() -> dict[str, Any]:
+    """Milliseconds per mm of passes across a face with scallops 0.5 mm apart, and across a flat one, equally deep."""
+    tolerance = Tolerance.for_pitch(PITCH_MM)
+    body = Body.of(tool_shape("ball", 8.0, 20.0), chord_mm=tolerance.chord_mm)
+    face, made = -1.8, {}
+    for depth in (0.5, 2.0):
+        times: dict[str, list[float]] = {"fresh": [], "scalloped": []}
+        for kind in ("fresh", "scalloped") * 5:
+            piece = CellSlices(box_slices((0.0, 0.0, -6.0), (40.0, 40.0, face if kind == "fresh" else 0.0), PITCH_MM))
+            with Removal(piece, tolerance.chord_mm) as removal:
+                for y in np.arange(-4.0, 44.1, 0.5) if kind == "scalloped" else ():
+                    removal.cut(Sweep(body, np.array([-5.0, y, face]), np.array([45.0, y, face])))
+                begin = time.perf_counter()
+                for x, y in ((x, y) for x in (10.0, 20.0, 30.0) for y in range(40)):
+                    removal.cut(Sweep(body, np.array([x, y, face - depth]), np.array([x, y + 1.0, face - depth])))
+                times[kind].append((time.perf_counter() - begin) * 1000.0 / 120.0)
+        fresh, scalloped = (statistics.median(times[kind]) for kind in ("fresh", "scalloped"))
+        made[f"{depth:g} mm deep"] = {
+            "fresh face, ms/mm": round(fresh, 3),
+            "scalloped face, ms/mm": round(scalloped, 3),
+            "ratio": round(scalloped / fresh, 3),
+        }
+    return made
+
+
+def memory() -> dict[str, Any]:
+    """What the slices hold after facing squares of growing side, and after one slot in blocks of two sizes."""
+    tolerance = Tolerance.for_pitch(PITCH_MM)
+    body = Body.of(tool_shape("ball", 8.0, 20.0), chord_mm=tolerance.chord_mm)
+    squares = {}
+    for side in (10.0, 20.0, 40.0):
+        piece = CellSlices(box_slices((0.0, 0.0, -10.0), (60.0, 60.0, 0.0), PITCH_MM))
+        with Removal(piece, tolerance.chord_mm) as removal:
+            for y in np.arange(10.0, 10.0 + side, 0.5):
+                removal.cut(Sweep(body, np.array([10.0, y, -2.0]), np.array([10.0 + side, y, -2.0])))
+        squares[f"{side:g} mm square, bytes/mm2"] = round(piece.bytes_in_use / side**2)
+    blocks = {}
+    for size in (60.0, 600.0):
+        piece = CellSlices(box_slices((0.0, 0.0, -10.0), (size, size, 0.0), PITCH_MM))
+        with Removal(piece, tolerance.chord_mm) as removal:
+            removal.cut(Sweep(body, np.array([5.0, 30.0, -2.0]), np.array([45.0, 30.0, -2.0])))
+        blocks[f"slot in a block of {size:g} mm, MiB"] = round(piece.bytes_in_use / 2**20, 1)
+    return {**squares, **blocks}
+
+
 def draw(times: list[float], out: Path) -> None:
     """The cost of each pass as a picture."""
     import matplotlib as mpl
@@ -188,6 +233,8 @@ def main() -> None:
             "ms/mm": round(statistics.median(times), 3),
         },
         block_size=block_sizes(),
+        across=across(),
+        memory=memory(),
     )
 
 

@@ -1,12 +1,12 @@
 """Contour paths: at every level the outlines of the inflated part's section, and further ones outside of them.
 
 The tri-slice paper, section 3.1: xy slices of the inflated part are tool paths; expanded by the radial depth of cut
-they are the layers before them. What lies higher counts as well, for the tool comes from above: a level's section is
-united with all above it.
+they are the layers before them. The part is inflated by the whole tool, shank and all, so what lies above a level counts.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -16,19 +16,20 @@ from twin.arrays import FloatArray
 from twin.cam.linking import Pass
 from twin.geometry.outline import (
     Area,
-    area_of,
     grown,
     holds,
     minus,
     nearest_area,
     outlines,
     pieces,
-    united,
 )
 from twin.geometry.region import Region
+from twin.geometry.shapes import to_shape
 
 #: A cleared area needs no more layers than this; more are a mistake in the radial depth.
 MOST_LAYERS = 10_000
+#: Part of the axial depth by which levels may be farther apart for rounding.
+_SLACK = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,7 +38,7 @@ class Level:
 
     Attributes:
         z_mm: height of the tip.
-        area: where the reference point may not be: the inflated part here and above.
+        area: where the tip may not be.
     """
 
     z_mm: float
@@ -67,22 +68,15 @@ class ContourOptions:
     chord_mm: float = 0.001
 
 
-def shadow_levels(heights_mm: FloatArray, regions: Sequence[Region], wanted: Sequence[int]) -> tuple[Level, ...]:
-    """Levels from the highest to the lowest.
+def level_heights(low_mm: float, high_mm: float, depth_mm: float) -> FloatArray:
+    """Heights from the top down, evenly spread, the lowest included, the highest not, no farther apart than a depth."""
+    count = max(1, math.ceil((high_mm - low_mm) / depth_mm - _SLACK))
+    return np.linspace(high_mm, low_mm, count + 1)[1:]
 
-    Args:
-        heights_mm: of the tip for every plane, increasing.
-        regions: the inflated part in (x, y) on every plane.
-        wanted: numbers of the planes that are levels.
-    """
-    levels: list[Level] = []
-    above: Area = area_of(Region())
-    high = len(regions)
-    for k in sorted(wanted, reverse=True):
-        above = united([above, *(area_of(regions[j]) for j in range(k, high))])
-        levels.append(Level(z_mm=float(heights_mm[k]), area=above))
-        high = k
-    return tuple(levels)
+
+def levels_of(heights_mm: FloatArray, sections: Sequence[Region]) -> tuple[Level, ...]:
+    """Levels from the sections, one a height, of a part inflated by the tool, which reaches up without end."""
+    return tuple(Level(z_mm=z, area=to_shape(r)) for z, r in zip(heights_mm.tolist(), sections, strict=True))
 
 
 def contour_passes(levels: Sequence[Level], options: ContourOptions) -> tuple[Pass, ...]:

@@ -50,17 +50,21 @@ def entry_moves(
         ramp ends elsewhere.
     """
     start = points_mm[0]
-    depth = begin_z_mm - float(start[2])
-    if depth <= 0.0:
+    if begin_z_mm <= start[2]:
         return [], points_mm
-    if top_mm is not None and options.entry == "helix":
-        helix = _helix(start, points_mm[1] - start, begin_z_mm, options, free)
-        if helix is not None:
-            return [helix], points_mm
-    if top_mm is not None and options.entry != "plunge":
-        return _ramp(points_mm, begin_z_mm, options)
-    down = np.array([[start[0], start[1], begin_z_mm], start])
-    return [Move(kind=MoveKind.PLUNGE, points_mm=down, feed_mm_min=options.plunge_mm_min)], points_mm
+    if top_mm is None or top_mm <= start[2] or options.entry == "plunge":
+        return [_plunge(start, begin_z_mm, float(start[2]), options)], points_mm
+    top = min(top_mm, begin_z_mm)
+    helix = _helix(start, points_mm[1] - start, top, options, free) if options.entry == "helix" else None
+    moves, points = ([helix], points_mm) if helix is not None else _ramp(points_mm, top, options)
+    if begin_z_mm > top:
+        moves.insert(0, _plunge(moves[0].start_mm, begin_z_mm, top, options))
+    return moves, points
+
+
+def _plunge(over: FloatArray, begin_z_mm: float, end_z_mm: float, options: EntryOptions) -> Move:
+    line = np.array([[over[0], over[1], begin_z_mm], [over[0], over[1], end_z_mm]])
+    return _moving(MoveKind.PLUNGE, line, options)
 
 
 def _ramp(points: FloatArray, begin_z_mm: float, options: EntryOptions) -> tuple[list[Move], FloatArray]:

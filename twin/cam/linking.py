@@ -33,14 +33,19 @@ class Pass:
         points_mm: tool tip, shape (n >= 2, 3); a closed pass ends where it begins.
         top_mm: height of the material over the pass's start; None where there is none to enter through.
         layer: passes of different layers are never linked along the surface.
+        approach_mm: a tip in nothing but air from which the way straight to the start is free, shape (3,); None
+            without one. It takes the place of the entry.
     """
 
     points_mm: FloatArray
     top_mm: float | None = None
     layer: int = 0
+    approach_mm: FloatArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points_mm", frozen(self.points_mm, "points_mm", (None, 3)))
+        if self.approach_mm is not None:
+            object.__setattr__(self, "approach_mm", frozen(self.approach_mm, "approach_mm", (3,)))
         if len(self.points_mm) < 2:
             raise ValueError(f"points_mm must have shape (n >= 2, 3), got {self.points_mm.shape}")
 
@@ -153,28 +158,35 @@ def _one_pass(
                 yield Move(kind=MoveKind.LINK, points_mm=points, feed_mm_min=feed)
             yield Move(kind=MoveKind.CUT, points_mm=one.points_mm, feed_mm_min=options.feed_mm_min)
             return
-    lead = lead_in(one.points_mm, options.entries, way.free if way else None)
-    start = lead.start_mm if lead is not None else one.points_mm[0]
-    top = max(start[2], one.top_mm if one.top_mm is not None else -np.inf) + options.clearance_mm
-    top = min(top, options.safe_z_mm)
-    begin = np.array([start[0], start[1], top])
-    if lead is not None:
-        down, points = [_plunge(begin, start, options)] if top > start[2] else [], one.points_mm
-    else:
-        down, points = entry_moves(one.points_mm, top, one.top_mm, options.entries, way.free if way else None)
-    begin = down[0].start_mm if down else begin
-    yield from _over(moves, begin, options, way)
-    yield from down
-    if lead is not None:
-        yield lead
+    way_in, points = _way_in(one, options, way)
+    yield from _over(moves, way_in[0].start_mm if way_in else points[0], options, way)
+    yield from way_in
     yield Move(kind=MoveKind.CUT, points_mm=points, feed_mm_min=options.feed_mm_min)
     out = lead_out(points, options.entries, way.free if way else None)
     if out is not None:
         yield out
 
 
-def _plunge(begin: FloatArray, end: FloatArray, options: LinkOptions) -> Move:
-    return Move(kind=MoveKind.PLUNGE, points_mm=np.array([begin, end]), feed_mm_min=options.plunge_mm_min)
+def _way_in(one: Pass, options: LinkOptions, way: Way | None) -> tuple[list[Move], FloatArray]:
+    """From where rapids end to a pass: from the side through air, by a lead, or down through the material.
+
+    Returns:
+        The moves, and the pass's points, see `twin.cam.entries.entry_moves`.
+    """
+    free = way.free if way else None
+    points, top = one.points_mm, one.top_mm
+    lead = lead_in(points, options.entries, free)
+    if one.approach_mm is not None and lead is None:
+        line = np.array([one.approach_mm, points[0]])
+        lead = Move(kind=MoveKind.LEAD, points_mm=line, feed_mm_min=options.lead_mm_min or options.feed_mm_min)
+        top = None
+    start = points[0] if lead is None else lead.start_mm
+    above = start[2] if top is None else max(float(start[2]), top)
+    begin = np.array([start[0], start[1], min(above + options.clearance_mm, options.safe_z_mm)])
+    if lead is None:
+        return entry_moves(points, float(begin[2]), top, options.entries, free)
+    down = Move(kind=MoveKind.PLUNGE, points_mm=np.array([begin, start]), feed_mm_min=options.plunge_mm_min)
+    return ([down, lead] if begin[2] > start[2] else [lead]), points
 
 
 def _down(moves: Sequence[Move], before: Pass, one: Pass, options: LinkOptions, way: Way | None) -> FloatArray | None:

@@ -43,19 +43,16 @@ class CellFamily:
         self.columns = max(1, math.ceil((high_uv_mm[0] - low_uv_mm[0]) / cell_mm * (1.0 - 1e-12)))
         self.tiles = max(1, math.ceil((high_uv_mm[1] - low_uv_mm[1]) / cell_mm * (1.0 - 1e-12)))
         self.area_mm2 = np.array([r.area_mm2 for r in regions], dtype=np.float64)
-        self.row: NDArray[np.int64] = np.full(len(regions), -1, dtype=np.int64)
-        self._rows = 0
-        shape = (0, self.columns, math.ceil(self.tiles / kernels.PAGE_TILES))
+        self.table: NDArray[np.int64] = np.zeros((len(regions), self.columns), dtype=np.int64)
+        shape = (1, math.ceil(self.tiles / kernels.PAGE_TILES))
         self.page: NDArray[np.int64] = np.zeros(shape, dtype=np.int64)
+        self._own_table: NDArray[np.bool_] = np.zeros(1, dtype=np.bool_)
         self._own: NDArray[np.bool_] = np.zeros(shape, dtype=np.bool_)
         self._regions = regions
         self._alike = Counter(map(id, regions))
         self._templates: dict[int, NDArray[np.int64]] = {}
-        self._used: NDArray[np.int64] = np.zeros(1, dtype=np.int64)
-        self.state: NDArray[np.int8] = np.zeros(0, dtype=np.int8)
-        self.start: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
-        self.size: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
-        self.room: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+        self._used: NDArray[np.int64] = np.array([0, 1])
+        self.cells: NDArray[np.int32] = np.zeros((0, 4), dtype=np.int32)
         self.pool = np.empty((1024, 5))
         self._free: NDArray[np.int64] = np.full(_FREE_LISTS + 1, -1, dtype=np.int64)
         self._free[-1] = 0
@@ -67,67 +64,65 @@ class CellFamily:
         self._out = np.empty((rows, 5))
         self._work = np.empty((rows, 5))
 
+    @property
+    def bytes_in_use(self) -> int:
+        """Memory that cells, their edges and the tables of pages take, without what is kept ready for more."""
+        cells, tables = self._used
+        per_table = self.page.shape[1] * (self.page.itemsize + self._own.itemsize)
+        edges, planes = self._free[-1], np.count_nonzero(self.table[:, 0])
+        return int(
+            cells * self.cells[0].nbytes
+            + edges * self.pool[0].nbytes
+            + tables * per_table
+            + planes * self.table[0].nbytes
+        )
+
+    def built(self, k: int) -> bool:
+        """Whether a plane has cells."""
+        return bool(self.table[k, 0])
+
     def ensure(self, first: int, last: int) -> None:
         """Build the planes ``first`` to ``last - 1``, as far as they exist, that are not built yet."""
         first = max(0, first)
-        for k in np.flatnonzero(self.row[first:last] < 0) if last > first else ():
+        for k in np.flatnonzero(self.table[first:last, 0] == 0) if last > first else ():
             self._build(first + int(k))
 
     def _build(self, k: int) -> None:
         region = id(self._regions[k])
-        alone = self._alike[region] == 1
-        if alone or region not in self._templates:
-            self._templates[region] = self._fill(k)
-        if self._rows == len(self.page):
-            self._grow_rows()
-        row, self._rows = self._rows, self._rows + 1
-        self.page[row], self._own[row] = self._templates[region], alone
-        if alone:
-            del self._templates[region]
-        self.row[k] = row
+        if self._alike[region] == 1:
+            self.table[k] = self._fill(k, alone=True)
+            return
+        if region not in self._templates:
+            self._templates[region] = self._fill(k, alone=False)
+        self.table[k] = self._templates[region]
 
-    def _grow_rows(self) -> None:
-        rows = min(len(self.row), max(64, 2 * len(self.page)))
-        for name in ("page", "_own"):
-            old = getattr(self, name)
-            new = np.empty((rows, *old.shape[1:]), dtype=old.dtype)
-            new[: len(old)] = old
-            setattr(self, name, new)
-
-    def _fill(self, k: int) -> NDArray[np.int64]:
-        """New cells for a plane's region; returns the first of each page."""
-        cells = math.prod(self.page.shape[1:]) * kernels.PAGE_TILES
-        place = int(self._used[0])
-        if place + cells > len(self.state):
-            self._grow_cells(place + cells)
-        self._used[0] += cells
+    def _fill(self, k: int, *, alone: bool) -> NDArray[np.int64]:
+        """New cells for a plane's region; returns the table of each column."""
         edges = _ring_edges(self._regions[k])
         cursor = np.zeros(1, dtype=np.int64)
+        tables = np.zeros(self.columns, dtype=np.int64)
         while True:
             answer = kernels.fill_plane(
                 edges,
-                place,
+                alone,
                 self.grid,
-                self.columns,
                 self.tiles,
-                *(self.state, self.start, self.size, self.room, self.pool, self._free),
+                tables,
+                self.page,
+                self._own_table,
+                self._own,
+                self._used,
+                self.cells,
+                self.pool,
+                self._free,
                 self._toggles[0],
                 self._work,
                 self._out,
                 cursor,
             )
             if answer == kernels.DONE:
-                break
+                return tables
             self._make_room(answer)
-        return np.asarray(place + np.arange(0, cells, kernels.PAGE_TILES).reshape(self.page.shape[1:]))
-
-    def _grow_cells(self, needed: int) -> None:
-        total = max(needed, 2 * len(self.state))
-        for name in ("state", "start", "size", "room"):
-            old = getattr(self, name)
-            new = np.zeros(total, dtype=old.dtype)
-            new[: len(old)] = old
-            setattr(self, name, new)
 
     def _make_room(self, answer: int) -> None:
         if answer == kernels.POOL_FULL:
@@ -135,9 +130,18 @@ class CellFamily:
             pool[: len(self.pool)] = self.pool
             self.pool = pool
         elif answer == kernels.CELLS_FULL:
-            self._grow_cells(len(self.state) + kernels.PAGE_TILES)
+            self._lengthen(len(self.cells) + kernels.PAGE_TILES * self.page.shape[1], "cells")
+        elif answer == kernels.TABLES_FULL:
+            self._lengthen(64 + len(self.page), "page", "_own_table", "_own")
         else:
             self._make_scratch(2 * len(self._out))
+
+    def _lengthen(self, more: int, *names: str) -> None:
+        for name in names:
+            old = getattr(self, name)
+            new = np.zeros((len(old) + more, *old.shape[1:]), dtype=old.dtype)
+            new[: len(old)] = old
+            setattr(self, name, new)
 
     def cut(self, strips: Strips, *, apply: bool = True) -> FloatArray:
         """Subtract strips (or only measure with ``apply=False``); returns the area taken from each of their planes."""
@@ -152,11 +156,14 @@ class CellFamily:
                 strips.fresh,
                 self.grid,
                 self.tiles,
-                self.row,
+                self.table,
                 self.page,
+                self._own_table,
                 self._own,
                 self._used,
-                *(self.state, self.start, self.size, self.room, self.pool, self._free),
+                self.cells,
+                self.pool,
+                self._free,
                 self._segments,
                 self._toggles[0],
                 self._toggles[1],
@@ -176,7 +183,7 @@ class CellFamily:
         self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> lines.LineEnds:
         """Lines through planes, as `SliceStore.line_ends` gives them."""
-        for k in planes[self.row[planes] < 0]:
+        for k in planes[self.table[planes, 0] == 0]:
             self.ensure(int(k), int(k) + 1)
         kernel = line_kernels.cell_v_lines if fixed else line_kernels.cell_u_lines
         return lines.collect(
@@ -185,10 +192,12 @@ class CellFamily:
                 at_mm,
                 window_mm,
                 lines.MERGE_MM,
-                self.page[self.row[planes]],
+                self.table[planes],
+                self.page,
                 self.grid,
                 self.tiles,
-                *(self.state, self.start, self.size, self.pool),
+                self.cells,
+                self.pool,
                 offsets,
                 ends,
                 slopes,
@@ -197,18 +206,17 @@ class CellFamily:
 
     def region(self, k: int) -> Region:
         """Material on a plane as rings."""
-        if self.row[k] < 0:
+        if not self.built(k):
             return self._regions[k]
         room = 256 + 4 * self.columns
         while True:
             out = np.empty((room, 6))
             n = kernels.plane_trapezoids(
-                self.page[self.row[k]],
+                self.table[k],
+                self.page,
                 self.grid,
                 self.tiles,
-                self.state,
-                self.start,
-                self.size,
+                self.cells,
                 self.pool,
                 out,
             )

@@ -1,7 +1,8 @@
 """Column cells: polygons on parallel planes cut into small cells; compiled.
 
 A plane is divided into columns along u and tiles along v, all squares of one size. A cell is EMPTY, FULL, or PARTIAL
-with its own list of edges. An edge is a row (u0, v0, u1, v1, sign), u0 < u1, sign +1 where material lies below it and
+with its own list of edges: a row of ``cells`` holds its state, first edge, number of edges, and room for edges. An edge
+is a row (u0, v0, u1, v1, sign), u0 < u1, sign +1 where material lies below it and
 -1 where it lies above; vertical edges are implied. Where material goes on through the top of a cell a closing edge lies
 there, so that a point is in material when an odd number of the cell's edges lies above it (half-open in u).
 
@@ -9,10 +10,11 @@ Cutting a strip lo(u) <= v <= hi(u) keeps the parts of the edges that are not ab
 parts of lo and hi that have an odd number of edges above them. Every part is classified once and both uses share the
 same u, so parity cannot leak.
 
-Cells lie in pages of 8 tiles of one column: ``page[row[k], column, block]`` is the index of the first cell of a
-page of plane k; ``row[k]`` is -1 while the plane is not built. Planes that begin alike share pages until one is cut:
-then it gets its own (``own``), with the same edges, which are never written where they belong to another cell
-(``room`` is 0).
+Cells lie in pages of 8 tiles of one column, and each column has a table of its pages: ``page[table[k, column], block]``
+is the index of the first cell of a page on plane k; ``table[k, column]`` is 0 while the plane is not built. Columns
+that begin alike, on one plane or on many, share their table until one is cut: then it gets its own (``own_table``),
+and each page that is cut becomes its own (``own``), with the same edges, which are never written where they belong to
+another cell (their room is 0). Pages without edges are shared between neighbouring columns, too.
 """
 
 from __future__ import annotations
@@ -27,8 +29,10 @@ from twin.arrays import FloatArray
 
 EMPTY, FULL, PARTIAL = 0, 1, 2
 #: What `cut_planes` and `fill_plane` return when they ran out of room, to be called again.
-DONE, POOL_FULL, SCRATCH_FULL, CELLS_FULL = 0, 1, 2, 3
+DONE, POOL_FULL, SCRATCH_FULL, CELLS_FULL, TABLES_FULL = 0, 1, 2, 3, 4
 _SMALLEST_BLOCK = 4
+#: Columns of the array of cells: state, first edge, number of edges, room for edges.
+_STATE, _START, _SIZE, _ROOM = 0, 1, 2, 3
 #: Tiles in a page of cells: 2 ** 3.
 PAGE_BITS = 3
 PAGE_TILES = 1 << PAGE_BITS
@@ -57,14 +61,12 @@ def _block_class(count: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _release(
-    cell: int, start: NDArray[np.int64], room: NDArray[np.int64], pool: FloatArray, free: NDArray[np.int64]
-) -> None:
-    if room[cell] > 0:
-        exponent = _block_class(room[cell])
-        pool[start[cell], 0] = float(free[exponent])
-        free[exponent] = start[cell]
-        room[cell] = 0
+def _release(cell: int, cells: NDArray[np.int32], pool: FloatArray, free: NDArray[np.int64]) -> None:
+    if cells[cell, _ROOM] > 0:
+        exponent = _block_class(cells[cell, _ROOM])
+        pool[cells[cell, _START], 0] = float(free[exponent])
+        free[exponent] = cells[cell, _START]
+        cells[cell, _ROOM] = 0
 
 
 @njit(cache=True, nogil=True)
@@ -72,10 +74,7 @@ def _store(
     cell: int,
     edges: FloatArray,
     count: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    room: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     free: NDArray[np.int64],
 ) -> bool:
@@ -83,7 +82,7 @@ def _store(
 
     ``free[e]`` heads the list of released blocks of 4 * 2**e edges; its last entry is the pool's end so far.
     """
-    if count > room[cell]:
+    if count > cells[cell, _ROOM]:
         exponent = _block_class(count)
         block = _SMALLEST_BLOCK << exponent
         last = len(free) - 1
@@ -95,19 +94,19 @@ def _store(
             if place + block > len(pool):
                 return False
             free[last] = place + block
-        _release(cell, start, room, pool, free)
-        start[cell] = place
-        room[cell] = block
-    begin = start[cell]
+        _release(cell, cells, pool, free)
+        cells[cell, _START] = place
+        cells[cell, _ROOM] = block
+    begin = cells[cell, _START]
     for i in range(count):
         for c in range(5):
             pool[begin + i, c] = edges[i, c]
-    size[cell] = count
+    cells[cell, _SIZE] = count
     if count == 0:
-        _release(cell, start, room, pool, free)
-        state[cell] = EMPTY
+        _release(cell, cells, pool, free)
+        cells[cell, _STATE] = EMPTY
     else:
-        state[cell] = PARTIAL
+        cells[cell, _STATE] = PARTIAL
     return True
 
 
@@ -348,32 +347,39 @@ def _cut_edges(
 
 @njit(cache=True, nogil=True)
 def _own_page(
-    k: int,
+    plane: int,
     column: int,
     block: int,
+    table: NDArray[np.int64],
     page: NDArray[np.int64],
+    own_table: NDArray[np.bool_],
     own: NDArray[np.bool_],
     used: NDArray[np.int64],
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    room: NDArray[np.int64],
-) -> bool:
-    """Give row k of the pages cells of its own for a page, if it has none yet; False when there are no cells left."""
-    if own[k, column, block]:
-        return True
-    old, new = page[k, column, block], used[0]
-    if new + PAGE_TILES > len(state):
-        return False
+    cells: NDArray[np.int32],
+) -> int:
+    """Give a column of a plane cells of its own for a page, if it has none yet; DONE, TABLES_FULL or CELLS_FULL."""
+    if not own_table[table[plane, column]]:
+        if used[1] >= len(page):
+            return TABLES_FULL
+        page[used[1]] = page[table[plane, column]]
+        own_table[used[1]] = True
+        own[used[1]] = False
+        table[plane, column] = used[1]
+        used[1] += 1
+    t = table[plane, column]
+    if own[t, block]:
+        return DONE
+    old, new = page[t, block], used[0]
+    if new + PAGE_TILES > len(cells):
+        return CELLS_FULL
     for tile in range(PAGE_TILES):
-        state[new + tile] = state[old + tile]
-        start[new + tile] = start[old + tile]
-        size[new + tile] = size[old + tile]
-        room[new + tile] = 0
+        for column_of in range(_ROOM):
+            cells[new + tile, column_of] = cells[old + tile, column_of]
+        cells[new + tile, _ROOM] = 0
     used[0] += PAGE_TILES
-    page[k, column, block] = new
-    own[k, column, block] = True
-    return True
+    page[t, block] = new
+    own[t, block] = True
+    return DONE
 
 
 @njit(cache=True, nogil=True)
@@ -384,14 +390,12 @@ def cut_planes(
     fresh: NDArray[np.bool_],
     grid: FloatArray,
     tiles: int,
-    row: NDArray[np.int64],
+    table: NDArray[np.int64],
     page: NDArray[np.int64],
+    own_table: NDArray[np.bool_],
     own: NDArray[np.bool_],
     used: NDArray[np.int64],
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    room: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     free: NDArray[np.int64],
     segments: FloatArray,
@@ -407,21 +411,21 @@ def cut_planes(
     Args:
         first, offsets, nodes, fresh: see `twin.geometry.strips.Strips`.
         grid: lower u, lower v, cell size.
-        used: shape (1,), number of cells in use.
+        used: shape (2,), number of cells and of tables in use.
         cursor: shape (3,): plane, column, tile to go on from; 0 at the first call, kept between calls.
         apply: False leaves the planes as they are.
         removed: shape (planes,), area taken from each plane, added to.
 
     Returns:
-        DONE, or POOL_FULL / SCRATCH_FULL / CELLS_FULL: make room and call again with the same cursor.
+        DONE, or POOL_FULL / SCRATCH_FULL / CELLS_FULL / TABLES_FULL: make room and call again with the same cursor.
     """
     u_low, v_low, h = grid[0], grid[1], grid[2]
-    columns = page.shape[1]
+    columns = table.shape[1]
     while cursor[0] < len(offsets) - 1:
         i = cursor[0]
         n0, n1 = offsets[i], offsets[i + 1] - 1
-        plane = row[first + i]
-        if n1 <= n0 or plane < 0:
+        plane = first + i
+        if n1 <= n0 or table[plane, 0] == 0:
             cursor[0] += 1
             continue
         u_first, u_last = nodes[n0, 0], nodes[n1, 0]
@@ -462,26 +466,27 @@ def cut_planes(
                 spans = a0 == c0 and a1 == c1
                 while tile <= last_tile:
                     block = tile >> PAGE_BITS
-                    cell = page[plane, column, block] + (tile & _IN_PAGE)
+                    cell = page[table[plane, column], block] + (tile & _IN_PAGE)
                     floor = v_low + tile * h
                     top = v_low + (tile + 1) * h
-                    if state[cell] == EMPTY:
+                    if cells[cell, _STATE] == EMPTY:
                         tile += 1
                         continue
                     if spans and lo_max <= floor and hi_min >= top:
-                        if state[cell] == FULL:
+                        if cells[cell, _STATE] == FULL:
                             area = (c1 - c0) * (top - floor)
                         else:
-                            area = _cell_area(pool, start[cell], size[cell], floor)
+                            area = _cell_area(pool, cells[cell, _START], cells[cell, _SIZE], floor)
                         if apply:
-                            if not _own_page(plane, column, block, page, own, used, state, start, size, room):
+                            answer = _own_page(plane, column, block, table, page, own_table, own, used, cells)
+                            if answer != DONE:
                                 cursor[1] = column
                                 cursor[2] = tile
-                                return CELLS_FULL
-                            cell = page[plane, column, block] + (tile & _IN_PAGE)
-                            _release(cell, start, room, pool, free)
-                            size[cell] = 0
-                            state[cell] = EMPTY
+                                return answer
+                            cell = page[table[plane, column], block] + (tile & _IN_PAGE)
+                            _release(cell, cells, pool, free)
+                            cells[cell, _SIZE] = 0
+                            cells[cell, _STATE] = EMPTY
                         removed[i] += area
                         tile += 1
                         continue
@@ -489,28 +494,29 @@ def cut_planes(
                     count = 0
                     before = 0.0
                     if pieces > 0:
-                        if state[cell] == FULL:
+                        if cells[cell, _STATE] == FULL:
                             last = len(out) - 1
                             out[last, 0], out[last, 1], out[last, 2], out[last, 3] = c0, top, c1, top
                             out[last, 4] = 1.0
                             before = (c1 - c0) * (top - floor)
                             count = _cut_edges(out, last, 1, segments, pieces, toggles_lo, toggles_hi, out[:last])
                         else:
-                            before = _cell_area(pool, start[cell], size[cell], floor)
-                            count = _cut_edges(
-                                pool, start[cell], size[cell], segments, pieces, toggles_lo, toggles_hi, out
-                            )
+                            begin, old = cells[cell, _START], cells[cell, _SIZE]
+                            before = _cell_area(pool, begin, old, floor)
+                            count = _cut_edges(pool, begin, old, segments, pieces, toggles_lo, toggles_hi, out)
                     if pieces < 0 or count < 0:
                         cursor[1] = column
                         cursor[2] = tile
                         return SCRATCH_FULL
                     if pieces > 0:
-                        if apply and not _own_page(plane, column, block, page, own, used, state, start, size, room):
-                            cursor[1] = column
-                            cursor[2] = tile
-                            return CELLS_FULL
-                        cell = page[plane, column, block] + (tile & _IN_PAGE)
-                        if apply and not _store(cell, out, count, state, start, size, room, pool, free):
+                        if apply:
+                            answer = _own_page(plane, column, block, table, page, own_table, own, used, cells)
+                            if answer != DONE:
+                                cursor[1] = column
+                                cursor[2] = tile
+                                return answer
+                        cell = page[table[plane, column], block] + (tile & _IN_PAGE)
+                        if apply and not _store(cell, out, count, cells, pool, free):
                             cursor[1] = column
                             cursor[2] = tile
                             return POOL_FULL
@@ -526,14 +532,15 @@ def cut_planes(
 @njit(cache=True, nogil=True)
 def fill_plane(
     edges: FloatArray,
-    cells: int,
+    alone: bool,
     grid: FloatArray,
-    columns: int,
     tiles: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
-    room: NDArray[np.int64],
+    tables: NDArray[np.int64],
+    page: NDArray[np.int64],
+    own_table: NDArray[np.bool_],
+    own: NDArray[np.bool_],
+    used: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     free: NDArray[np.int64],
     toggles: FloatArray,
@@ -545,19 +552,32 @@ def fill_plane(
 
     Args:
         edges: shape (n, 5), all non-vertical ring edges as (u0, v0, u1, v1, sign).
-        cells: first of the plane's cells; each column takes whole pages of them.
+        alone: no other plane will share these cells.
+        tables: shape (columns,), filled: the table of each column.
+        used: see `cut_planes`.
         work: shape (2 n + more, 5), scratch for the edges of one column; as ``out``.
         cursor: shape (1,): column to go on from.
 
     Returns:
-        DONE, POOL_FULL or SCRATCH_FULL, as `cut_planes`.
+        DONE or what ran out, as `cut_planes`.
     """
     u_low, v_low, h = grid[0], grid[1], grid[2]
-    stride = (tiles + _IN_PAGE) >> PAGE_BITS << PAGE_BITS
-    while cursor[0] < columns:
+    blocks = page.shape[1]
+    without_edges = False
+    while cursor[0] < len(tables):
         column = cursor[0]
+        if used[1] >= len(page):
+            return TABLES_FULL
+        first = used[0]
+        if first + blocks * PAGE_TILES > len(cells):
+            return CELLS_FULL
         c0 = u_low + column * h
         c1 = u_low + (column + 1) * h
+        if without_edges and _go_on(edges, u_low + (column - 1) * h, c1):
+            tables[column] = tables[column - 1]
+            own_table[tables[column]] = False
+            cursor[0] += 1
+            continue
         n = 0
         for e in range(len(edges)):
             a, b = max(c0, edges[e, 0]), min(c1, edges[e, 2])
@@ -567,12 +587,13 @@ def fill_plane(
                 n = _emit(work, n, a, b, edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], edges[e, 4])
         repeats = False
         for tile in range(tiles):
-            top = v_low + (tile + 1) * h
+            floor, top = v_low + tile * h, v_low + (tile + 1) * h
             lowest = math.inf
             for e in range(n):
                 lowest = min(lowest, work[e, 1], work[e, 3])
             if repeats and lowest > top:
-                state[cells + column * stride + tile] = state[cells + column * stride + tile - 1]
+                cells[first + tile, _STATE] = cells[first + tile - 1, _STATE]
+                cells[first + tile, _SIZE] = 0
                 continue
             count = 0
             rest = 0
@@ -596,7 +617,7 @@ def fill_plane(
                     rest = _emit(work, rest, high0, high1, u0, v0, u1, v1, sign)
                 elif above0:
                     rest = _emit(work, rest, u0, u1, u0, v0, u1, v1, sign)
-                else:
+                elif v0 > floor or v1 > floor:  # an edge on the floor lies above no point of the cell
                     count = _emit(out, count, u0, u1, u0, v0, u1, v1, sign)
             toggles[:n_toggles].sort()
             for t in range(0, n_toggles, 2):
@@ -606,15 +627,58 @@ def fill_plane(
             # with all edges above, the next tile is like this one if this one is all material or none
             repeats = rest == n
             n = rest
-            cell = cells + column * stride + tile
+            cell = first + tile
             closed = _spans_top(out, count, c0, c1, top)
             repeats = repeats and (closed or count == 0)
             if closed:
-                state[cell] = FULL
-            elif not _store(cell, out, count, state, start, size, room, pool, free):
+                cells[cell, _STATE] = FULL
+                cells[cell, _SIZE] = 0
+            elif not _store(cell, out, count, cells, pool, free):
                 return POOL_FULL
+        t, before = used[1], page[tables[max(0, column - 1)]]
+        new = column == 0
+        without_edges = True
+        for block in range(blocks):
+            at, most = first + block * PAGE_TILES, min(PAGE_TILES, tiles - block * PAGE_TILES)
+            plain = PARTIAL not in cells[at : at + most, _STATE]
+            own[t, block] = alone and not plain
+            without_edges = without_edges and plain
+            if (
+                plain
+                and column > 0
+                and np.array_equal(cells[at : at + most, _STATE], cells[before[block] : before[block] + most, _STATE])
+            ):
+                page[t, block] = before[block]
+            else:
+                page[t, block] = _move_page(at, used, cells)
+                new = True
+        tables[column] = t if new else tables[column - 1]
+        own_table[tables[column]] = alone and new
+        used[1] += new
         cursor[0] += 1
     return DONE
+
+
+@njit(cache=True, nogil=True)
+def _go_on(edges: FloatArray, begin: float, end: float) -> bool:
+    """Whether all edges between two u run level from the one to the other."""
+    for e in range(len(edges)):
+        if edges[e, 0] < end and edges[e, 2] > begin:
+            if edges[e, 0] > begin or edges[e, 2] < end or edges[e, 1] != edges[e, 3]:
+                return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _move_page(at: int, used: NDArray[np.int64], cells: NDArray[np.int32]) -> int:
+    """Move a page down to the first cells that are not in use; returns where it is then."""
+    to = used[0]
+    for tile in range(PAGE_TILES if to < at else 0):
+        for column in range(_ROOM + 1):
+            cells[to + tile, column] = cells[at + tile, column]
+        cells[at + tile, _ROOM] = 0
+    used[0] = to + PAGE_TILES
+    return to
 
 
 @njit(cache=True, nogil=True)
@@ -649,11 +713,9 @@ def contains(
     pitch: float,
     grid: FloatArray,
     tiles: int,
-    row: NDArray[np.int64],
+    table: NDArray[np.int64],
     page: NDArray[np.int64],
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     votes: NDArray[np.int8],
     needed_low: int,
@@ -663,7 +725,7 @@ def contains(
 
     Points whose votes are below ``needed_low`` or above ``needed_high`` already are left alone: their case is settled.
     """
-    planes, columns = len(row), page.shape[1]
+    planes, columns = table.shape
     u_low, v_low, h = grid[0], grid[1], grid[2]
     for i in range(len(points)):
         if votes[i] < needed_low or votes[i] > needed_high:
@@ -674,26 +736,25 @@ def contains(
         tile = int(math.floor((v - v_low) / h))
         if k < 0 or k >= planes or column < 0 or column >= columns or tile < 0 or tile >= tiles:
             continue
-        if row[k] < 0:
+        if table[k, column] == 0:
             continue
-        cell = page[row[k], column, tile >> PAGE_BITS] + (tile & _IN_PAGE)
-        kind = state[cell]
-        if kind == FULL or (kind == PARTIAL and _odd_above(u, v, start[cell], start[cell] + size[cell], pool)):
+        cell = page[table[k, column], tile >> PAGE_BITS] + (tile & _IN_PAGE)
+        kind, begin, end = cells[cell, _STATE], cells[cell, _START], cells[cell, _START] + cells[cell, _SIZE]
+        if kind == FULL or (kind == PARTIAL and _odd_above(u, v, begin, end, pool)):
             votes[i] += 1
 
 
 @njit(cache=True, nogil=True)
 def plane_trapezoids(
+    tables: NDArray[np.int64],
     page: NDArray[np.int64],
     grid: FloatArray,
     tiles: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     out: FloatArray,
 ) -> int:
-    """Material of a plane, given by its row of pages, as trapezoids with vertical sides.
+    """Material of a plane, given by its columns' tables, as trapezoids with vertical sides.
 
     Rows are (ua, ub, bottom a, bottom b, top a, top b).
 
@@ -703,15 +764,17 @@ def plane_trapezoids(
     cuts = np.empty(0)
     height = np.empty(0)
     order = np.empty(0, dtype=np.int64)
-    for column in range(len(page)):
+    for column in range(len(tables)):
         c0 = grid[0] + column * grid[2]
         c1 = grid[0] + (column + 1) * grid[2]
         tile = 0
         while tile < tiles:
-            cell = page[column, tile >> PAGE_BITS] + (tile & _IN_PAGE)
+            cell = page[tables[column], tile >> PAGE_BITS] + (tile & _IN_PAGE)
             floor = grid[1] + tile * grid[2]
-            if state[cell] == FULL:
-                while tile < tiles and state[page[column, tile >> PAGE_BITS] + (tile & _IN_PAGE)] == FULL:
+            if cells[cell, _STATE] == FULL:
+                while (
+                    tile < tiles and cells[page[tables[column], tile >> PAGE_BITS] + (tile & _IN_PAGE), _STATE] == FULL
+                ):
                     tile += 1
                 if n >= len(out):
                     return -1
@@ -719,8 +782,8 @@ def plane_trapezoids(
                 out[n, 0], out[n, 1], out[n, 2], out[n, 3], out[n, 4], out[n, 5] = c0, c1, floor, floor, top, top
                 n += 1
                 continue
-            if state[cell] == PARTIAL:
-                begin, count = start[cell], size[cell]
+            if cells[cell, _STATE] == PARTIAL:
+                begin, count = cells[cell, _START], cells[cell, _SIZE]
                 if len(cuts) < 2 * count:
                     cuts = np.empty(4 * count)
                     height = np.empty(2 * count)

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 
 _EMPTY, _FULL = 0, 1
+#: Columns of the array of cells, as there.
+_STATE, _START, _SIZE = 0, 1, 2
 #: Tiles in a page of cells, as there.
 _PAGE_BITS, _IN_PAGE = 3, 7
 
@@ -50,12 +52,11 @@ def cell_u_lines(
     lines: FloatArray,
     window: tuple[float, float],
     merge: float,
-    pages: NDArray[np.int64],
+    tables: NDArray[np.int64],
+    page: NDArray[np.int64],
     grid: FloatArray,
     tiles: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     offsets: NDArray[np.int64],
     ends: FloatArray,
@@ -65,7 +66,8 @@ def cell_u_lines(
 
     Args:
         window: only cells between these v are looked at.
-        pages: shape (p, columns, blocks), the first cell of each page of each plane.
+        tables: shape (p, columns), the table of pages of each column of each plane.
+        page: see there.
         offsets: shape (p n + 1,), filled: all lines of the first plane, then those of the second, ...
         ends, slopes: filled.
 
@@ -77,25 +79,25 @@ def cell_u_lines(
     t1 = min(tiles, math.floor((window[1] - grid[1]) / h) + 1)
     n = 0
     offsets[0] = 0
-    for i in range(len(pages) * len(lines)):
+    for i in range(len(tables) * len(lines)):
         begin = n
-        page = pages[i // len(lines)]
+        plane = i // len(lines)
         u = lines[i % len(lines)]
         column = math.floor((u - grid[0]) / h)
-        if 0 <= column < len(page):
+        if 0 <= column < tables.shape[1]:
             for tile in range(t0, t1):
-                cell = page[column, tile >> _PAGE_BITS] + (tile & _IN_PAGE)
-                if state[cell] == _EMPTY:
+                cell = page[tables[plane, column], tile >> _PAGE_BITS] + (tile & _IN_PAGE)
+                if cells[cell, _STATE] == _EMPTY:
                     continue
-                if n + 3 + size[cell] > len(ends):
+                if n + 3 + cells[cell, _SIZE] > len(ends):
                     return -1
                 floor = grid[1] + tile * h
                 m = n
-                if state[cell] == _FULL:
+                if cells[cell, _STATE] == _FULL:
                     ends[m], slopes[m] = grid[1] + (tile + 1) * h, 0.0
                     m += 1
                 else:
-                    for e in range(start[cell], start[cell] + size[cell]):
+                    for e in range(cells[cell, _START], cells[cell, _START] + cells[cell, _SIZE]):
                         if pool[e, 0] <= u < pool[e, 2]:
                             slope = (pool[e, 3] - pool[e, 1]) / (pool[e, 2] - pool[e, 0])
                             ends[m], slopes[m] = pool[e, 1] + slope * (u - pool[e, 0]), slope
@@ -114,12 +116,11 @@ def cell_v_lines(
     lines: FloatArray,
     window: tuple[float, float],
     merge: float,
-    pages: NDArray[np.int64],
+    tables: NDArray[np.int64],
+    page: NDArray[np.int64],
     grid: FloatArray,
     tiles: int,
-    state: NDArray[np.int8],
-    start: NDArray[np.int64],
-    size: NDArray[np.int64],
+    cells: NDArray[np.int32],
     pool: FloatArray,
     offsets: NDArray[np.int64],
     ends: FloatArray,
@@ -132,28 +133,28 @@ def cell_v_lines(
     """
     h = grid[2]
     c0 = max(0, math.floor((window[0] - grid[0]) / h))
-    c1 = min(pages.shape[1], math.floor((window[1] - grid[0]) / h) + 1)
+    c1 = min(tables.shape[1], math.floor((window[1] - grid[0]) / h) + 1)
     n = 0
     offsets[0] = 0
-    for i in range(len(pages) * len(lines)):
+    for i in range(len(tables) * len(lines)):
         begin = n
-        page = pages[i // len(lines)]
+        plane = i // len(lines)
         v = lines[i % len(lines)]
         tile = math.floor((v - grid[1]) / h)
         if 0 <= tile < tiles:
             for column in range(c0, c1):
-                cell = page[column, tile >> _PAGE_BITS] + (tile & _IN_PAGE)
-                if state[cell] == _EMPTY:
+                cell = page[tables[plane, column], tile >> _PAGE_BITS] + (tile & _IN_PAGE)
+                if cells[cell, _STATE] == _EMPTY:
                     continue
-                if n + 2 + 2 * size[cell] > len(ends):
+                if n + 2 + 2 * cells[cell, _SIZE] > len(ends):
                     return -1
                 m = n
-                if state[cell] == _FULL:
+                if cells[cell, _STATE] == _FULL:
                     ends[m], slopes[m] = grid[0] + column * h, 0.0
                     ends[m + 1], slopes[m + 1] = grid[0] + (column + 1) * h, 0.0
                     m += 2
                 else:
-                    for e in range(start[cell], start[cell] + size[cell]):
+                    for e in range(cells[cell, _START], cells[cell, _START] + cells[cell, _SIZE]):
                         u0, v0, u1, v1 = pool[e, 0], pool[e, 1], pool[e, 2], pool[e, 3]
                         if v0 <= v and v1 <= v:
                             continue

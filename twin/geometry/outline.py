@@ -11,37 +11,12 @@ import shapely
 
 from twin.arrays import FloatArray
 from twin.geometry.clip import DECIMALS
-from twin.geometry.region import Region
 
 #: A shapely polygon or multipolygon.
 Area: TypeAlias = Any
 
 #: Areas and lines smaller than this are leftovers of rounding, mm2 and mm.
 _LEAST = 1e-6
-
-
-def area_of(region: Region) -> Area:
-    """A region as an area; its rings do not cross, so it is what they enclose an odd number of times."""
-    if region.empty:
-        return shapely.Polygon()
-    rings = [shapely.Polygon(r) for r in region.rings]
-    solid = shapely.union_all([p for p, r in zip(rings, region.rings, strict=True) if _ccw(r)])
-    holes = [p for p, r in zip(rings, region.rings, strict=True) if not _ccw(r)]
-    if not holes:
-        return solid
-    islands = shapely.union_all(holes)
-    # an island in a hole is an outer ring again, so it must survive the hole around it
-    inner = [p for p, r in zip(rings, region.rings, strict=True) if _ccw(r) and islands.covers(p)]
-    return shapely.union_all([solid.difference(islands), *inner]) if inner else solid.difference(islands)
-
-
-def _ccw(ring: FloatArray) -> bool:
-    return bool(shapely.LinearRing(ring).is_ccw)
-
-
-def united(areas: Sequence[Area]) -> Area:
-    """Union of areas."""
-    return shapely.union_all(list(areas))
 
 
 def box_area(low_mm: Sequence[float], high_mm: Sequence[float]) -> Area:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry import slicing_kernels as kernels
-from twin.geometry.clip import DECIMALS, union_nonzero
+from twin.geometry.clip import DECIMALS, LEAST_AREA_MM2, union_nonzero
 from twin.geometry.region import Region
 
 
@@ -32,17 +32,28 @@ class MeshEdges:
 
 def mesh_edges(triangles: NDArray[np.int64]) -> MeshEdges:
     """Number the edges of triangles, shape (m, 3), none with a corner twice."""
-    tails, tips = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    low, high = np.minimum(tails, tips), np.maximum(tails, tips)
-    width = int(triangles.max(initial=0)) + 1
-    keys, sides = np.unique(low * width + high, return_inverse=True)
-    forward = np.bincount(sides[tails < tips], minlength=len(keys))
+    ends, ways = np.empty((2, 3 * len(triangles), 2), dtype=np.int64)
+    sides = np.empty((len(triangles), 3), dtype=np.int64)
+    count = kernels.number_edges(triangles, int(triangles.max(initial=-1)) + 1, ends, ways, sides)
     return MeshEdges(
-        ends=np.column_stack((keys // width, keys % width)),
-        sides=sides.reshape(-1, 3).astype(np.int64),
-        forward=forward,
-        backward=np.bincount(sides, minlength=len(keys)) - forward,
+        ends=ends[:count].copy(), sides=sides, forward=ways[:count, 0].copy(), backward=ways[:count, 1].copy()
     )
+
+
+def weld(points_mm: FloatArray) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Join points that are equal when rounded to 1e-5 mm.
+
+    Args:
+        points_mm: shape (n, 3), finite.
+
+    Returns:
+        the different points, rounded, in the order in which they come first; and the number of each point among them.
+    """
+    units = 10.0**DECIMALS
+    whole = np.rint(points_mm * units).astype(np.int64)
+    ids, first = np.empty((2, len(whole)), dtype=np.int64)
+    count = kernels.weld(whole, ids, first)
+    return whole[first[:count]] / units, ids
 
 
 def mesh_sections(
@@ -77,8 +88,19 @@ def mesh_sections(
     rings = kernels.chain_rings(segments, begins, len(edges.ends), order)
     points = np.empty((len(segments), 2))
     kernels.edge_points(vertices_mm, edges.ends, axes, planes_mm, rings, order, segments, points)
-    points = np.round(points, DECIMALS) + 0.0
-    found: list[list[FloatArray]] = [[] for _ in planes_mm]
-    for plane, first, last in rings.tolist():
+    return _regions(points, rings, len(planes_mm))
+
+
+def _regions(points_mm: FloatArray, rings: NDArray[np.int64], planes: int) -> tuple[Region, ...]:
+    """Chained rings to regions; only where rings meet each other are they united."""
+    units = 10.0**DECIMALS
+    whole, kept = np.empty(points_mm.shape, dtype=np.int64), np.empty_like(rings)
+    kept = kept[: kernels.clean_rings(points_mm, rings, units, LEAST_AREA_MM2 * units**2, whole, kept)]
+    simple = np.empty(planes, dtype=np.bool_)
+    kernels.simple_planes(whole, kept, planes, simple)
+    points = whole / units
+    points.flags.writeable = False
+    found: list[list[FloatArray]] = [[] for _ in range(planes)]
+    for plane, first, last in kept.tolist():
         found[plane].append(points[first:last])
-    return tuple(union_nonzero(r) if r else Region() for r in found)
+    return tuple(Region(tuple(r)) if s else union_nonzero(r) for r, s in zip(found, simple.tolist(), strict=True))

@@ -1,4 +1,4 @@
-"""Sections of a closed triangle mesh with parallel planes, chained to rings by shared edges; compiled.
+"""Triangles joined to a mesh, and sections of it with parallel planes, chained to rings by shared edges; compiled.
 
 A vertex on a plane counts as above it. So every triangle that reaches both sides has exactly one edge that goes up
 through the plane and one that goes down, whether or not vertices, edges or whole faces lie on it, and no tolerance
@@ -12,6 +12,90 @@ from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+
+
+@njit(cache=True, nogil=True)
+def weld(points: NDArray[np.int64], ids: NDArray[np.int64], first: NDArray[np.int64]) -> int:
+    """Give equal points equal numbers, in the order in which they come first.
+
+    Args:
+        points: shape (n, 3), whole units.
+        ids: shape (n,), filled.
+        first: shape (n,), filled with the row where each number comes first.
+
+    Returns:
+        Number of different points.
+    """
+    size = 16
+    while size < 2 * len(points):
+        size *= 2
+    table = np.full(size, -1, dtype=np.int64)
+    count = 0
+    for i in range(len(points)):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        mixed = (x * np.int64(73856093)) ^ (y * np.int64(19349663)) ^ (z * np.int64(83492791))
+        mixed = (mixed ^ (mixed >> np.int64(29))) * np.int64(668265261)
+        slot = (mixed ^ (mixed >> np.int64(17))) & np.int64(size - 1)
+        while True:
+            known = table[slot]
+            if known < 0:
+                table[slot] = count
+                first[count] = i
+                ids[i] = count
+                count += 1
+                break
+            j = first[known]
+            if points[j, 0] == x and points[j, 1] == y and points[j, 2] == z:
+                ids[i] = known
+                break
+            slot = (slot + 1) & np.int64(size - 1)
+    return count
+
+
+@njit(cache=True, nogil=True)
+def number_edges(
+    triangles: NDArray[np.int64], vertices: int, ends: NDArray[np.int64], ways: NDArray[np.int64], sides: NDArray[np.int64]
+) -> int:
+    """Number the edges of triangles, by the lower of their vertices.
+
+    Args:
+        triangles: shape (m, 3), no corner twice.
+        vertices: number of vertices.
+        ends: shape (3 m, 2), filled with the vertices of each edge, lower number first.
+        ways: shape (3 m, 2), filled: how many triangles run along it from lower to higher vertex, and back.
+        sides: shape (m, 3), filled: edge j of a triangle joins its corners j and j + 1.
+
+    Returns:
+        Number of edges.
+    """
+    begins = np.zeros(vertices + 1, dtype=np.int64)
+    for t in range(len(triangles)):
+        for j in range(3):
+            begins[min(triangles[t, j], triangles[t, (j + 1) % 3]) + 1] += 1
+    for v in range(vertices):
+        begins[v + 1] += begins[v]
+    held = np.zeros(vertices, dtype=np.int64)
+    found = np.empty(3 * len(triangles), dtype=np.int64)
+    count = 0
+    for t in range(len(triangles)):
+        for j in range(3):
+            a, b = triangles[t, j], triangles[t, (j + 1) % 3]
+            low, high = min(a, b), max(a, b)
+            edge = -1
+            for m in range(begins[low], begins[low] + held[low]):
+                if ends[found[m], 1] == high:
+                    edge = found[m]
+                    break
+            if edge < 0:
+                edge = count
+                count += 1
+                ends[edge, 0], ends[edge, 1] = low, high
+                ways[edge, 0], ways[edge, 1] = 0, 0
+                found[begins[low] + held[low]] = edge
+                held[low] += 1
+            ways[edge, 0 if a < b else 1] += 1
+            sides[t, j] = edge
+    return count
 
 
 @njit(cache=True, nogil=True)
@@ -141,3 +225,174 @@ def edge_points(
             t = (plane - vertices[a, w]) / (vertices[b, w] - vertices[a, w])
             points[i, 0] = vertices[a, u] + t * (vertices[b, u] - vertices[a, u])
             points[i, 1] = vertices[a, v] + t * (vertices[b, v] - vertices[a, v])
+
+
+@njit(cache=True, nogil=True)
+def clean_rings(
+    points: FloatArray,
+    rings: NDArray[np.int64],
+    units: float,
+    least: float,
+    whole: NDArray[np.int64],
+    kept: NDArray[np.int64],
+) -> int:
+    """Round rings to whole units, without points that repeat or lie exactly on a straight line, and without slivers.
+
+    Args:
+        points: shape (n, 2).
+        rings: rows (plane, first, one past the last point).
+        units: whole units a mm.
+        least: smallest area kept, square units.
+        whole: shape (n, 2), filled.
+        kept: shape (r, 3), filled with rows like ``rings``.
+
+    Returns:
+        Number of rings kept.
+    """
+    count, n = 0, 0
+    for r in range(len(rings)):
+        first = n
+        for i in range(rings[r, 1], rings[r, 2]):
+            u, v = np.int64(np.rint(points[i, 0] * units)), np.int64(np.rint(points[i, 1] * units))
+            if n > first and whole[n - 1, 0] == u and whole[n - 1, 1] == v:
+                continue
+            while n > first + 1 and _straight(whole[n - 2, 0], whole[n - 2, 1], whole[n - 1, 0], whole[n - 1, 1], u, v):
+                n -= 1
+            if n > first and whole[n - 1, 0] == u and whole[n - 1, 1] == v:
+                continue
+            whole[n, 0], whole[n, 1] = u, v
+            n += 1
+        begin = first
+        while n - begin > 2:
+            u, v = whole[begin, 0], whole[begin, 1]
+            if whole[n - 1, 0] == u and whole[n - 1, 1] == v:
+                n -= 1
+            elif _straight(whole[n - 2, 0], whole[n - 2, 1], whole[n - 1, 0], whole[n - 1, 1], u, v):
+                n -= 1
+            elif _straight(whole[n - 1, 0], whole[n - 1, 1], u, v, whole[begin + 1, 0], whole[begin + 1, 1]):
+                begin += 1
+            else:
+                break
+        if n - begin > 2 and abs(_twice_area(whole, begin, n)) > 2.0 * least:
+            kept[count, 0], kept[count, 1], kept[count, 2] = rings[r, 0], begin, n
+            count += 1
+        else:
+            n = first
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _straight(au: int, av: int, bu: int, bv: int, cu: int, cv: int) -> bool:
+    """Whether b lies on the line through a and c, exactly."""
+    return (bu - au) * (cv - bv) == (bv - av) * (cu - bu)
+
+
+@njit(cache=True, nogil=True)
+def _twice_area(whole: NDArray[np.int64], first: int, last: int) -> float:
+    """Twice the area of a ring, counter-clockwise positive."""
+    total = 0.0
+    u0, v0 = whole[first, 0], whole[first, 1]
+    for i in range(first + 1, last - 1):
+        total += float(whole[i, 0] - u0) * float(whole[i + 1, 1] - v0)
+        total -= float(whole[i + 1, 0] - u0) * float(whole[i, 1] - v0)
+    return total
+
+
+@njit(cache=True, nogil=True)
+def _side(au: int, av: int, bu: int, bv: int, cu: int, cv: int) -> int:
+    """1, 0, -1: c lies left of, on, right of the line from a to b, exactly."""
+    cross = (bu - au) * (cv - av) - (bv - av) * (cu - au)
+    return 1 if cross > 0 else (-1 if cross < 0 else 0)
+
+
+@njit(cache=True, nogil=True)
+def simple_planes(
+    whole: NDArray[np.int64], rings: NDArray[np.int64], planes: int, simple: NDArray[np.bool_]
+) -> None:
+    """Which planes have rings that neither cross nor touch, material on their left: nothing is to be united there.
+
+    Args:
+        whole: points in whole units.
+        rings: rows (plane, first, one past the last point), by plane.
+        planes: number of planes.
+        simple: shape (planes,), filled.
+    """
+    simple[:] = True
+    begin = 0
+    while begin < len(rings):
+        end = begin
+        while end < len(rings) and rings[end, 0] == rings[begin, 0]:
+            end += 1
+        mine = rings[begin:end]
+        simple[rings[begin, 0]] = not _any_touch(whole, mine) and _well_nested(whole, mine)
+        begin = end
+
+
+@njit(cache=True, nogil=True)
+def _any_touch(whole: NDArray[np.int64], rings: NDArray[np.int64]) -> bool:
+    """Whether edges of rings meet anywhere but at the corner between neighbours: a sweep along u."""
+    count = 0
+    for r in range(len(rings)):
+        count += rings[r, 2] - rings[r, 1]
+    tail, tip = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+    low = np.empty(count, dtype=np.int64)
+    n = 0
+    for r in range(len(rings)):
+        for i in range(rings[r, 1], rings[r, 2]):
+            j = i + 1 if i + 1 < rings[r, 2] else rings[r, 1]
+            tail[n], tip[n] = i, j
+            low[n] = min(whole[i, 0], whole[j, 0])
+            n += 1
+    order = np.argsort(low)
+    active = np.empty(count, dtype=np.int64)
+    held = 0
+    for e in order:
+        a, b = tail[e], tip[e]
+        au, av, bu, bv = whole[a, 0], whole[a, 1], whole[b, 0], whole[b, 1]
+        bottom, top = min(av, bv), max(av, bv)
+        left, stay = low[e], 0
+        for m in range(held):
+            f = active[m]
+            c, d = tail[f], tip[f]
+            if max(whole[c, 0], whole[d, 0]) < left:
+                continue
+            active[stay] = f
+            stay += 1
+            cv, dv = whole[c, 1], whole[d, 1]
+            if max(cv, dv) < bottom or min(cv, dv) > top:
+                continue
+            cu, du = whole[c, 0], whole[d, 0]
+            if d == a or b == c:
+                # neighbours: only a turn straight back lets them meet elsewhere
+                x, y, z = (c, a, b) if d == a else (a, b, d)
+                if _side(whole[x, 0], whole[x, 1], whole[y, 0], whole[y, 1], whole[z, 0], whole[z, 1]) == 0:
+                    return True
+                continue
+            if (
+                _side(au, av, bu, bv, cu, cv) * _side(au, av, bu, bv, du, dv) <= 0
+                and _side(cu, cv, du, dv, au, av) * _side(cu, cv, du, dv, bu, bv) <= 0
+            ):
+                return True
+        active[stay] = e
+        held = stay + 1
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _well_nested(whole: NDArray[np.int64], rings: NDArray[np.int64]) -> bool:
+    """Whether just outside of every counter-clockwise ring there is nothing, and of every clockwise one material."""
+    for r in range(len(rings)):
+        u, v = whole[rings[r, 1], 0], whole[rings[r, 1], 1]
+        winding = 0
+        for s in range(len(rings)):
+            if s == r:
+                continue
+            for i in range(rings[s, 1], rings[s, 2]):
+                j = i + 1 if i + 1 < rings[s, 2] else rings[s, 1]
+                if whole[i, 0] <= u < whole[j, 0]:
+                    winding -= _side(whole[i, 0], whole[i, 1], whole[j, 0], whole[j, 1], u, v) < 0
+                elif whole[j, 0] <= u < whole[i, 0]:
+                    winding += _side(whole[i, 0], whole[i, 1], whole[j, 0], whole[j, 1], u, v) > 0
+        if winding != (0 if _twice_area(whole, rings[r, 1], rings[r, 2]) > 0.0 else 1):
+            return False
+    return True

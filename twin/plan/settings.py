@@ -67,9 +67,7 @@ class PathSettings(BaseModel):
     lead_mm: float = Field(default=0.0, ge=0.0, description="radius of leads, 0 for none")
     thin_mm: float = Field(default=0.0002, ge=0.0, description="points this near to a chord are left out; 0 keeps all")
     arcs_mm: float | None = Field(default=None, gt=0.0, description="tolerance of arcs; none are fitted if not given")
-    gouge_mm: float | None = Field(
-        default=None, ge=0.0, description="of both, the part towards the material; as large if not given"
-    )
+    gouge_mm: float = Field(default=0.0005, ge=0.0, description="how much of either may lie towards the material")
     tool_number: int = Field(default=1, ge=1, description="T and H word")
     teeth: int = Field(default=2, ge=1, le=100, description="number of flutes, for the job file")
     coolant: Literal["off", "mist", "flood"] = Field(default="flood", description="coolant")

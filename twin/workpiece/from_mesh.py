@@ -13,14 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from twin.arrays import FloatArray, frozen
 from twin.errors import MeshError
-from twin.geometry.clip import DECIMALS
-from twin.geometry.slicing import MeshEdges, mesh_edges, mesh_sections
+from twin.geometry.slicing import MeshEdges, mesh_edges, mesh_sections, weld
 from twin.workpiece.solid_check import check_closed, check_orientation
 from twin.workpiece.stock import SliceSet, even_pitch, plane_counts, plane_positions
 from twin.workpiece.store import PLANE_AXES
 
 _BINARY_HEADER = 84
 _BINARY_TRIANGLE = 50
+_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,9 +86,8 @@ def solid(corners_mm: ArrayLike, name: str) -> Solid:
     bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
     if len(bad):
         raise MeshError(f"{name}: triangle {bad[0] + 1} of {len(corners)} has a corner that is no finite number")
-    points = np.round(corners.reshape(-1, 3), DECIMALS) + 0.0
-    vertices, places = np.unique(points, axis=0, return_inverse=True)
-    triangles = places.reshape(-1, 3).astype(np.int64)
+    vertices, places = weld(corners.reshape(-1, 3))
+    triangles = places.reshape(-1, 3)
     whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     if not whole.any():
         raise MeshError(f"{name}: every one of its {len(corners)} triangles has no area; expected a closed surface")
@@ -147,16 +146,24 @@ def _stl_corners(name: str, data: bytes) -> FloatArray:
     binary = data.lstrip()[:5].lower() != b"solid" or b"\0" in data
     if binary:
         _check_binary_length(name, data)
+        corners = np.frombuffer(data, dtype=_RECORD, offset=_BINARY_HEADER)["corners"].astype(np.float64)
+    else:
+        corners = _ascii_corners(name, data)
+    if len(corners) == 0:
+        raise MeshError(f"{name}: holds no triangles; expected binary or ASCII STL with a closed surface")
+    return corners
+
+
+def _ascii_corners(name: str, data: bytes) -> FloatArray:
+    """The same of a text file."""
     try:
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="stl", process=False)
         corners: FloatArray = np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)]
     except Exception as error:  # trimesh and its helpers raise many kinds
         raise MeshError(f"{name}: cannot be read as STL; expected a whole binary or ASCII STL file") from error
-    begun = len(corners) if binary else len(re.findall(rb"(?i)\bfacet\s+normal\b", data))
+    begun = len(re.findall(rb"(?i)\bfacet\s+normal\b", data))
     if begun != len(corners):
         raise MeshError(f"{name}: is no whole STL file: {begun} facets begin, {len(corners)} can be read")
-    if len(corners) == 0:
-        raise MeshError(f"{name}: holds no triangles; expected binary or ASCII STL with a closed surface")
     return corners
 
 

@@ -45,11 +45,12 @@ class Removal:
             Removed volume of each, as `cut` gives it.
         """
         last = self._last[1] if self._last is not None and self._last[0] is self.workpiece else None
+        levels = self.workpiece.levels()
 
         def family(axis: int) -> list[float]:
             earlier = (last, *sweeps[:-1]) if apply else [None] * len(sweeps)
             return [
-                self._cut_family(axis, sweep, apply, sweep.follows(before)) if self._touched(sweep) else 0.0
+                self._cut_family(axis, sweep, levels, apply, sweep.follows(before)) if self._touched(sweep) else 0.0
                 for sweep, before in zip(sweeps, earlier, strict=True)
             ]
 
@@ -62,11 +63,12 @@ class Removal:
         low, high = sweep.bounds_mm
         return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
 
-    def _cut_family(self, axis: int, sweep: Sweep, apply: bool, follows: bool) -> float:
+    def _cut_family(self, axis: int, sweep: Sweep, levels: int, apply: bool, follows: bool) -> float:
         piece = self.workpiece
         low, pitch = float(piece.low_mm[axis]), float(piece.pitch_mm[axis])
-        top = float(piece.high_mm[2])
-        strips = sweep.strips(axis, low, pitch, piece.count(axis), self._chord_mm, start_is_cut=follows, top_mm=top)
+        count = levels if axis == 2 else piece.count(axis)
+        top = float(piece.low_mm[2] + (levels + 0.5) * piece.pitch_mm[2])  # where the next plane is, which is empty
+        strips = sweep.strips(axis, low, pitch, count, self._chord_mm, start_is_cut=follows, top_mm=top)
         return float(np.sum(piece.cut(axis, strips, apply=apply)) * pitch)
 
     def close(self) -> None:

@@ -20,6 +20,9 @@ from twin.geometry.strips import Strips
 from twin.workpiece.stock import SliceSet
 from twin.workpiece.store import PLANE_AXES
 
+#: Areas that are taken for rounding: as a number, and as a share of the stock's plan.
+LEAST_MM2, LEAST_SHARE = 1e-6, 1e-9
+
 
 class TriSlices(ABC):
     """What both stores share: the planes, areas and volumes."""
@@ -45,6 +48,16 @@ class TriSlices(ABC):
     def count(self, axis: int) -> int:
         """Number of planes of a family."""
         return len(self.slices.regions[axis])
+
+    def levels(self) -> int:
+        """How many z planes there are up to the highest one with material: above it there is nothing to cut.
+
+        Less than a millionth of a square millimetre, or a billionth of the stock's box, is rounding and no material.
+        """
+        extent = self.high_mm - self.low_mm
+        least = min(LEAST_MM2, LEAST_SHARE * extent[0] * extent[1])
+        held = np.flatnonzero(self.areas_mm2(2) > least)
+        return int(held[-1]) + 1 if len(held) else 0
 
     @abstractmethod
     def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
@@ -135,6 +148,11 @@ class CellSlices(TriSlices):
         """See `SliceStore.line_ends`."""
         return self._families[axis].line_ends(planes, fixed, at_mm, window_mm)
 
+    @property
+    def bytes_in_use(self) -> int:
+        """Memory that the slices take, without what is kept ready for more."""
+        return sum(family.bytes_in_use for family in self._families)
+
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
         """See `TriSlices.prepare`: planes are built when first needed; those that are not built hold nothing."""
         for axis, family in enumerate(self._families):
@@ -158,11 +176,9 @@ class CellSlices(TriSlices):
             self.pitch_mm[axis],
             family.grid,
             family.tiles,
-            family.row,
+            family.table,
             family.page,
-            family.state,
-            family.start,
-            family.size,
+            family.cells,
             family.pool,
             votes,
             least,

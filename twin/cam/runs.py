@@ -1,4 +1,4 @@
-"""The line that a tool's reference point follows over a plane section of an inflated part."""
+"""Runs of a polyline below a height."""
 
 from __future__ import annotations
 
@@ -7,38 +7,6 @@ from itertools import pairwise
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cam import envelope_kernels as kernels
-from twin.geometry.region import Region
-
-
-def upper_envelope(region: Region, low_mm: float, high_mm: float, floor_mm: float) -> FloatArray:
-    """The highest boundary of a section over a range of u; undercuts lie below it.
-
-    Args:
-        region: material in (u, v).
-        low_mm, high_mm: range of u, low below high.
-        floor_mm: least v, also where there is no material.
-
-    Returns:
-        shape (n >= 2, 2), u from low to high; where the section has a vertical wall two points have one u.
-    """
-    edges = _upper_edges(region)
-    edges = edges[(edges[:, 2] > low_mm) & (edges[:, 0] < high_mm)]
-    ends = edges[:, (0, 2)].ravel()
-    at = np.unique(np.concatenate(([low_mm, high_mm], ends[(ends > low_mm) & (ends < high_mm)])))
-    points = np.empty((3 * len(at), 2))
-    count = kernels.envelope(edges, at, floor_mm, np.empty(len(edges), dtype=np.int64), points)
-    line: FloatArray = points[:count].copy()
-    return line
-
-
-def _upper_edges(region: Region) -> FloatArray:
-    """Edges with material below, turned to increasing u, by increasing u, shape (m, 4)."""
-    if region.empty:
-        return np.empty((0, 4))
-    edges = np.concatenate([np.hstack((np.roll(ring, -1, axis=0), ring)) for ring in region.rings])
-    upper = edges[edges[:, 0] < edges[:, 2]]
-    return np.ascontiguousarray(upper[np.argsort(upper[:, 0], kind="stable")])
 
 
 def below(points_mm: FloatArray, top_mm: float) -> list[FloatArray]:

@@ -1,0 +1,346 @@
+"""How low a tool can go over a part's slices: upper envelope of profiles inflated by the tool's sections; compiled.
+
+A profile is the upper boundary of one section, as segments and convex corners. Inflated by a convex section of the tool,
+a segment is moved by the point of the tool that touches it, and a corner becomes a piece of the tool's own outline, from
+the point that touches one side to the point that touches the other. The envelope of all pieces of all sections in reach
+is the inflated part's upper boundary (the tri-slice paper, eq. 1), known at evenly spaced places.
+
+Heights of the tool's outline at a distance from its axis: 0 within the disc, then a corner arc.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+
+#: Nodes of the table that finds where a bull-nose tool touches a slope.
+_TABLE = 65
+#: How alike neighbouring curvatures must be, for heights between sections to be interpolated.
+_ALIKE = 4.0
+#: Sections asked within a cell: the one touched at an end, and those beside it.
+_ASKED = 5
+#: Part of a step by which pieces reach further, so that a tool that just touches a wall counts as touching it.
+_TIE = 1e-7
+#: Sections closer than this are taken for one, mm.
+_SAME_MM = 1e-7
+
+
+@njit(cache=True, nogil=True)
+def profile_pieces(
+    points: FloatArray,
+    rings: NDArray[np.int64],
+    sections: NDArray[np.int64],
+    segments: FloatArray,
+    segment_begins: NDArray[np.int64],
+    corners: FloatArray,
+    corner_begins: NDArray[np.int64],
+) -> None:
+    """Upper segments and convex corners of every section.
+
+    Args:
+        points: shape (n, 2), rings one after the other, material on the left.
+        rings: where each ring begins, and the end.
+        sections: the first ring of each section, and the end.
+        segments: shape (n, 6), filled with rows u, v of the left end, u, v of the right end, outward normal.
+        corners: shape (n, 6), filled with rows u, v, normal of the side to the right, normal of the side to the left.
+        segment_begins, corner_begins: filled with where each section's rows begin, and the end.
+    """
+    ns, nc = 0, 0
+    for k in range(len(sections) - 1):
+        segment_begins[k], corner_begins[k] = ns, nc
+        for r in range(sections[k], sections[k + 1]):
+            first, last = rings[r], rings[r + 1]
+            pu, pv = points[last - 1, 0], points[last - 1, 1]
+            au, av = points[first, 0], points[first, 1]
+            length = math.hypot(au - pu, av - pv)
+            mu, mv = (av - pv) / length, (pu - au) / length
+            for i in range(first, last):
+                j = i + 1 if i + 1 < last else first
+                bu, bv = points[j, 0], points[j, 1]
+                length = math.hypot(bu - au, bv - av)
+                if length == 0.0:
+                    continue
+                nu, nv = (bv - av) / length, (au - bu) / length
+                if nv > 0.0:
+                    segments[ns, 0], segments[ns, 1] = bu, bv
+                    segments[ns, 2], segments[ns, 3] = au, av
+                    segments[ns, 4], segments[ns, 5] = nu, nv
+                    ns += 1
+                if mu * nv - mv * nu >= 0.0 and (mv > 0.0 or nv > 0.0 or (mu > 0.0 and nu < 0.0 and mv == nv)):
+                    corners[nc, 0], corners[nc, 1] = au, av
+                    corners[nc, 2], corners[nc, 3] = (mu, mv) if mv > 0.0 else (1.0, 0.0)
+                    corners[nc, 4], corners[nc, 5] = (nu, nv) if nv > 0.0 else (-1.0, 0.0)
+                    nc += 1
+                au, av, mu, mv = bu, bv, nu, nv
+    segment_begins[len(sections) - 1], corner_begins[len(sections) - 1] = ns, nc
+
+
+@njit(cache=True, nogil=True)
+def _outline(s: float, d2: float, disc: float, corner: float) -> float:
+    """Height of the tool above its lowest point, at a place s along a plane that is sqrt(d2) off its axis."""
+    if disc == 0.0:
+        return corner - math.sqrt(max(0.0, corner * corner - d2 - s * s))
+    over = math.sqrt(d2 + s * s) - disc
+    return 0.0 if over <= 0.0 else corner - math.sqrt(max(0.0, corner * corner - over * over))
+
+
+@njit(cache=True, nogil=True)
+def _touch_table(d2: float, disc: float, corner: float, width: float, place: FloatArray, slope: FloatArray) -> None:
+    """Places along the outline and the slopes there, from flat to upright."""
+    flat = math.sqrt(max(0.0, disc * disc - d2))
+    for k in range(_TABLE):
+        part = math.sin(0.5 * math.pi * k / (_TABLE - 1))
+        s = flat + (width - flat) * part
+        radius = math.sqrt(d2 + s * s)
+        over = radius - disc
+        place[k] = s
+        rest = corner * corner - over * over
+        if k == _TABLE - 1 or rest <= 0.0:
+            slope[k] = math.inf
+        else:
+            slope[k] = 0.0 if over <= 0.0 else over / math.sqrt(rest) * s / radius
+
+
+@njit(cache=True, nogil=True)
+def _touch(nu: float, nv: float, rho: float, round_end: bool, place: FloatArray, slope: FloatArray) -> float:
+    """Where the tool stands along the plane, from the point where it touches a side with this normal."""
+    if round_end:
+        return rho * nu
+    side = 1.0 if nu > 0.0 else -1.0
+    if nu == 0.0:
+        return 0.0
+    if nv <= 0.0:
+        return side * place[-1]
+    wanted = abs(nu) / nv
+    k = np.searchsorted(slope, wanted)
+    if k == 0:
+        return side * place[0]
+    if k >= _TABLE - 1:
+        return side * place[_TABLE - 2] if wanted < math.inf else side * place[-1]
+    share = (wanted - slope[k - 1]) / (slope[k] - slope[k - 1])
+    return side * (place[k - 1] + share * (place[k] - place[k - 1]))
+
+
+@njit(cache=True, nogil=True)
+def _section_row(
+    segments: FloatArray,
+    corners: FloatArray,
+    d2: float,
+    disc: float,
+    corner: float,
+    start: float,
+    step: float,
+    place: FloatArray,
+    slope: FloatArray,
+    row: FloatArray,
+) -> None:
+    """Raise a row of heights to the inflated profile of one section."""
+    n = len(row)
+    radius = disc + corner
+    width = math.sqrt(radius * radius - d2)
+    round_end = disc == 0.0
+    if not round_end:
+        _touch_table(d2, disc, corner, width, place, slope)
+    rho2 = corner * corner - d2
+    low, high = start - _TIE * step, start + (n - 1 + _TIE) * step
+    for i in range(len(segments)):
+        if segments[i, 2] < low - radius or segments[i, 0] > high + radius:
+            continue
+        nu, nv = segments[i, 4], segments[i, 5]
+        s = _touch(nu, nv, width, round_end, place, slope)
+        left, right = segments[i, 0] + s, segments[i, 2] + s
+        if right < low or left > high:
+            continue
+        first = max(0, math.ceil((left - start) / step - _TIE))
+        last = min(n - 1, math.floor((right - start) / step + _TIE))
+        if first > last:
+            continue
+        climb = -nu / nv
+        height = segments[i, 1] - _outline(s, d2, disc, corner) + climb * (start - left)
+        climb *= step
+        for k in range(first, last + 1):
+            row[k] = max(row[k], height + climb * k)
+    for i in range(len(corners)):
+        u, v = corners[i, 0], corners[i, 1]
+        if u < low - radius or u > high + radius:
+            continue
+        right = u + _touch(corners[i, 2], corners[i, 3], width, round_end, place, slope)
+        left = u + _touch(corners[i, 4], corners[i, 5], width, round_end, place, slope)
+        if right < low or left > high:
+            continue
+        first = max(0, math.ceil((left - start) / step - _TIE))
+        last = min(n - 1, math.floor((right - start) / step + _TIE))
+        if round_end:
+            v -= corner
+            for k in range(first, last + 1):
+                s = start + step * k - u
+                row[k] = max(row[k], v + math.sqrt(max(0.0, rho2 - s * s)))
+        else:
+            for k in range(first, last + 1):
+                row[k] = max(row[k], v - _outline(start + step * k - u, d2, disc, corner))
+
+
+@njit(cache=True, nogil=True)
+def _bend(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
+    """Half the second derivative across sections j - 1, j, j + 1; NaN where one of them is missing."""
+    if j < 1 or j + 1 >= len(rows) or not (rows[j - 1, i] > -math.inf and rows[j + 1, i] > -math.inf):
+        return math.nan
+    h1, h2 = y[j] - y[j - 1], y[j + 1] - y[j]
+    if h1 < _SAME_MM or h2 < _SAME_MM:
+        return math.nan
+    return ((rows[j + 1, i] - rows[j, i]) / h2 - (rows[j, i] - rows[j - 1, i]) / h1) / (h1 + h2)
+
+
+@njit(cache=True, nogil=True)
+def _between(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
+    """How much higher than at section j, the highest, a smooth part is between sections."""
+    bend = _bend(y, rows, j, i)
+    if not bend < 0.0:
+        return 0.0
+    for other in (_bend(y, rows, j - 1, i), _bend(y, rows, j + 1, i)):
+        if not (other < bend / _ALIKE and other > bend * _ALIKE):
+            return 0.0
+    climb = (rows[j, i] - rows[j - 1, i]) / (y[j] - y[j - 1]) + bend * (y[j] - y[j - 1])
+    return -0.25 * climb * climb / bend
+
+
+@njit(cache=True, nogil=True)
+def _reach(positions: FloatArray, plane: float, radius: float) -> tuple[int, int]:
+    """First and one past the last section that a tool at a plane can touch."""
+    first = np.searchsorted(positions, plane - radius, side="right")
+    return first, np.searchsorted(positions, plane + radius, side="left")
+
+
+@njit(cache=True, nogil=True)
+def _highest(y: FloatArray, rows: FloatArray, smooth: bool, heights: FloatArray, best: NDArray[np.int64]) -> None:
+    """The highest of all rows at every place, and which it is."""
+    heights[:] = -math.inf
+    best[:] = -1
+    for j in range(len(rows)):
+        for i in range(len(heights)):
+            if rows[j, i] > heights[i]:
+                heights[i] = rows[j, i]
+                best[i] = j
+    if smooth:
+        for i in range(len(heights)):
+            if best[i] >= 0:
+                heights[i] += _between(y, rows, best[i], i)
+
+
+@njit(cache=True, nogil=True)
+def envelope(
+    segments: FloatArray,
+    segment_begins: NDArray[np.int64],
+    corners: FloatArray,
+    corner_begins: NDArray[np.int64],
+    positions: FloatArray,
+    planes: FloatArray,
+    disc: float,
+    corner: float,
+    start: float,
+    step: float,
+    smooth: bool,
+    heights: FloatArray,
+    best: NDArray[np.int64],
+) -> None:
+    """Heights of the tool's lowest point over a part.
+
+    Args:
+        segments, corners, segment_begins, corner_begins: from `profile_pieces`.
+        positions: shape (m,), where the sections lie, increasing.
+        planes: shape (p,), where the tool's axis runs.
+        disc, corner: radius of the tool's bottom and of its corner arc.
+        start, step: places along the planes at which heights are wanted.
+        smooth: whether heights are interpolated between sections where these change smoothly.
+        heights: shape (p, n), filled; -inf where the tool touches nothing.
+        best: shape (p, n), filled with the section that is touched, -1 for none.
+    """
+    radius = disc + corner
+    most = 0
+    for p in range(len(planes)):
+        first, last = _reach(positions, planes[p], radius)
+        most = max(most, last - first)
+    rows = np.empty((most, heights.shape[1]))
+    place, slope = np.empty(_TABLE), np.empty(_TABLE)
+    for p in range(len(planes)):
+        first, last = _reach(positions, planes[p], radius)
+        near = rows[: last - first]
+        near[:] = -math.inf
+        for k in range(first, last):
+            _section_row(
+                segments[segment_begins[k] : segment_begins[k + 1]],
+                corners[corner_begins[k] : corner_begins[k + 1]],
+                (planes[p] - positions[k]) ** 2,
+                disc,
+                corner,
+                start,
+                step,
+                place,
+                slope,
+                near[k - first],
+            )
+        _highest(positions[first:last], near, smooth, heights[p], best[p])
+        for i in range(heights.shape[1]):
+            if best[p, i] >= 0:
+                best[p, i] += first
+
+
+@njit(cache=True, nogil=True)
+def refine(
+    segments: FloatArray,
+    segment_begins: NDArray[np.int64],
+    corners: FloatArray,
+    corner_begins: NDArray[np.int64],
+    positions: FloatArray,
+    cells: FloatArray,
+    sections: NDArray[np.int64],
+    disc: float,
+    corner: float,
+    step: float,
+    smooth: bool,
+    heights: FloatArray,
+) -> None:
+    """Heights at finer places within some cells, of the sections touched at the cells' ends and those beside them.
+
+    Args:
+        cells: shape (c, 2): plane and first place of each cell.
+        sections: shape (c, 2): the sections touched at its ends, -1 for none.
+        step: distance of the finer places.
+        heights: shape (c, n), filled; -inf where the tool touches nothing.
+    """
+    radius = disc + corner
+    n = heights.shape[1]
+    rows, here = np.empty((_ASKED, n)), np.empty(n)
+    best = np.empty(n, dtype=np.int64)
+    place, slope = np.empty(_TABLE), np.empty(_TABLE)
+    for c in range(len(cells)):
+        heights[c] = -math.inf
+        begin, end = _reach(positions, cells[c, 0], radius)
+        for side in range(2):
+            middle = sections[c, side]
+            if middle < 0 or (side == 1 and middle == sections[c, 0]):
+                continue
+            first, last = max(begin, middle - _ASKED // 2), min(end, middle + _ASKED // 2 + 1)
+            near = rows[: max(0, last - first)]
+            near[:] = -math.inf
+            for k in range(first, last):
+                _section_row(
+                    segments[segment_begins[k] : segment_begins[k + 1]],
+                    corners[corner_begins[k] : corner_begins[k + 1]],
+                    (cells[c, 0] - positions[k]) ** 2,
+                    disc,
+                    corner,
+                    cells[c, 1],
+                    step,
+                    place,
+                    slope,
+                    near[k - first],
+                )
+            _highest(positions[first : max(first, last)], near, smooth, here, best)
+            for i in range(n):
+                heights[c, i] = max(heights[c, i], here[i])

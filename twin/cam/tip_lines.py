@@ -1,0 +1,279 @@
+"""How low a tool may go along straight lines over a part: the upper boundary of its inflated slices.
+
+For scanning paths only the upper boundary of an inflated part counts. On the plane of a line it is the envelope of all
+neighbouring profiles, each inflated by the tool's section at its distance (the tri-slice paper, eq. 1); it is computed
+without polygons, exactly along the line. Between slices, where heights change smoothly, their largest is interpolated by
+a parabola across three slices; at edges and walls it is not.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+from twin.cam import tip_line_kernels as kernels
+from twin.cam.element import StructuringElement
+from twin.cam.sections import Sections
+from twin.cam.threads import in_parts
+
+#: A rough cell is cut into this many.
+_FINER = 16
+#: Change of slope that makes an inner corner, and slope that makes a wall.
+_CORNER = 0.02
+_WALL = 50.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Places:
+    """Evenly spaced places along a line.
+
+    Attributes:
+        start_mm: the first.
+        step_mm: their distance, above 0.
+        count: how many, at least 2.
+    """
+
+    start_mm: float
+    step_mm: float
+    count: int
+
+    @classmethod
+    def between(cls, low_mm: float, high_mm: float, step_mm: float) -> Places:
+        """Both ends included, no farther apart than a step."""
+        gaps = max(1, math.ceil((high_mm - low_mm) / step_mm - 1e-9))
+        return cls(start_mm=low_mm, step_mm=(high_mm - low_mm) / gaps, count=gaps + 1)
+
+    @property
+    def at_mm(self) -> FloatArray:
+        """The places, shape (count,)."""
+        at: FloatArray = self.start_mm + self.step_mm * np.arange(self.count)
+        return at
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Profiles:
+    """The upper sides of a part's sections across x or y, ready for `tip_heights`.
+
+    Attributes:
+        axis: 0 for sections normal to x (lines along y), 1 for sections normal to y (lines along x).
+        positions_mm: shape (m,), increasing.
+        segments, segment_begins, corners, corner_begins: see `twin.cam.tip_line_kernels.profile_pieces`.
+        low_mm, high_mm: range along the lines that the sections fill.
+    """
+
+    axis: int
+    positions_mm: FloatArray
+    segments: FloatArray
+    segment_begins: NDArray[np.int64]
+    corners: FloatArray
+    corner_begins: NDArray[np.int64]
+    low_mm: float
+    high_mm: float
+
+    @property
+    def arrays(self) -> tuple[FloatArray, NDArray[np.int64], FloatArray, NDArray[np.int64], FloatArray]:
+        """What the kernels take."""
+        return self.segments, self.segment_begins, self.corners, self.corner_begins, self.positions_mm
+
+    @classmethod
+    def of(cls, sections: Sections) -> Profiles:
+        """Prepare sections across x or y.
+
+        Raises:
+            ValueError: sections across z.
+        """
+        if sections.axis not in (0, 1):
+            raise ValueError(f"profiles need sections across x or y, got axis {sections.axis}")
+        rings = [r for region in sections.regions for r in region.rings]
+        points = np.concatenate(rings) if rings else np.empty((0, 2))
+        begins = np.cumsum([0] + [len(r) for r in rings])
+        firsts = np.cumsum([0] + [len(region.rings) for region in sections.regions])
+        segments, corners = np.empty((len(points), 6)), np.empty((len(points), 6))
+        segment_begins, corner_begins = np.empty((2, len(firsts)), dtype=np.int64)
+        kernels.profile_pieces(points, begins, firsts, segments, segment_begins, corners, corner_begins)
+        low, high = (float(points[:, 0].min()), float(points[:, 0].max())) if len(points) else (0.0, 0.0)
+        return cls(
+            axis=sections.axis,
+            positions_mm=sections.positions_mm,
+            segments=segments[: segment_begins[-1]].copy(),
+            segment_begins=segment_begins,
+            corners=corners[: corner_begins[-1]].copy(),
+            corner_begins=corner_begins,
+            low_mm=low,
+            high_mm=high,
+        )
+
+
+def tip_heights(
+    profiles: Profiles,
+    element: StructuringElement,
+    planes_mm: FloatArray,
+    places: Places,
+    *,
+    allowance_mm: float = 0.0,
+    smooth: bool = True,
+    threads: int | None = None,
+) -> FloatArray:
+    """Lowest heights of an element's reference point along lines over a part.
+
+    Args:
+        element: `StructuringElement.tool` gives heights of the tool's tip, `StructuringElement.ball` of the ball's
+            centre.
+        planes_mm: shape (p,), positions of the lines across the sections' axis: y of lines along x, or x of lines
+            along y. Any positions will do.
+        places: along every line.
+        allowance_mm: material to leave everywhere.
+        smooth: False leaves out what lies between sections, as the paper does: heights are then never too large.
+        threads: threads to work with, all cores if not given; results do not depend on it.
+
+    Returns:
+        shape (p, n), mm; -inf where the tool touches nothing.
+
+    Raises:
+        ToolError: an allowance that the element cannot have.
+    """
+    grown = element.with_allowance(allowance_mm)
+    return _heights(profiles, grown, planes_mm, places, smooth, threads)[0]
+
+
+def _heights(
+    profiles: Profiles,
+    element: StructuringElement,
+    planes_mm: FloatArray,
+    places: Places,
+    smooth: bool,
+    threads: int | None,
+) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Heights, and the section that is touched at each."""
+    planes = np.ascontiguousarray(planes_mm, dtype=np.float64)
+    heights, best = np.empty((len(planes), places.count)), np.empty((len(planes), places.count), dtype=np.int64)
+
+    def part(first: int, last: int) -> None:
+        kernels.envelope(
+            *profiles.arrays,
+            planes[first:last],
+            element.disc_mm,
+            element.corner_mm,
+            places.start_mm,
+            places.step_mm,
+            smooth,
+            heights[first:last],
+            best[first:last],
+        )
+
+    in_parts(part, len(planes), threads=threads)
+    return heights + element.drop_mm, best
+
+
+def tip_lines(
+    profiles: Profiles,
+    element: StructuringElement,
+    planes_mm: FloatArray,
+    places: Places,
+    floor_mm: float,
+    *,
+    allowance_mm: float = 0.0,
+    chord_mm: float = 0.001,
+    smooth: bool = True,
+    threads: int | None = None,
+) -> list[FloatArray]:
+    """The polylines that an element's reference point follows along lines over a part.
+
+    Heights as of `tip_heights`, with places in between wherever chords would stand off by more than ``chord_mm``, at
+    inner corners and at walls: there the line first leaves the wall and then goes down upright.
+
+    Args:
+        places: the evenly spaced places to begin with; the first and the last are the lines' ends.
+        floor_mm: least height, also where the tool touches nothing.
+        chord_mm: how far chords may stand off.
+
+    Returns:
+        for every plane shape (n, 2): place along the line, increasing or equal, and height.
+
+    Raises:
+        ToolError: an allowance that the element cannot have.
+    """
+    grown = element.with_allowance(allowance_mm)
+    heights, best = _heights(profiles, grown, planes_mm, places, smooth, threads)
+    heights = np.maximum(heights, floor_mm)
+    rows, cells = np.nonzero(_rough(heights, places.step_mm, chord_mm))
+    touched = np.stack((best[rows, cells], best[rows, cells + 1]), axis=1)
+    finer = _refined(profiles, grown, np.asarray(planes_mm)[rows], places, cells, touched, smooth, threads)
+    finer = np.maximum(finer, floor_mm)
+    inner = places.step_mm / _FINER * np.arange(_FINER)
+    lines = []
+    bounds = np.searchsorted(rows, np.arange(len(heights) + 1))
+    at = places.at_mm
+    for p, (first, last) in enumerate(pairwise(bounds.tolist())):
+        mine = cells[first:last]
+        u = np.concatenate((np.delete(at, mine), (at[mine, None] + inner).ravel()))
+        z = np.concatenate((np.delete(heights[p], mine), finer[first:last, :_FINER].ravel()))
+        order = np.argsort(u, kind="stable")
+        lines.append(_with_walls(_with_corners(np.column_stack((u[order], z[order])))))
+    return lines
+
+
+def _rough(heights: FloatArray, step_mm: float, chord_mm: float) -> NDArray[np.bool_]:
+    """Cells whose chords may stand off by more than a tolerance, by the second differences at their ends."""
+    slope = np.abs(np.diff(heights, axis=1)) / step_mm
+    bend = np.zeros_like(heights)
+    bend[:, 1:-1] = np.abs(np.diff(heights, 2, axis=1)) / np.sqrt(1.0 + np.minimum(slope[:, 1:], slope[:, :-1]) ** 2)
+    return np.asarray(np.maximum(bend[:, 1:], bend[:, :-1]) > 8.0 * chord_mm)
+
+
+def _refined(
+    profiles: Profiles,
+    element: StructuringElement,
+    planes_mm: FloatArray,
+    places: Places,
+    cells: NDArray[np.int64],
+    touched: NDArray[np.int64],
+    smooth: bool,
+    threads: int | None,
+) -> FloatArray:
+    """Heights within cells, shape (cells, _FINER + 1)."""
+    starts = np.column_stack((planes_mm, places.at_mm[cells]))
+    heights = np.empty((len(cells), _FINER + 1))
+
+    def part(first: int, last: int) -> None:
+        kernels.refine(
+            *profiles.arrays,
+            starts[first:last],
+            touched[first:last],
+            element.disc_mm,
+            element.corner_mm,
+            places.step_mm / _FINER,
+            smooth,
+            heights[first:last],
+        )
+
+    in_parts(part, len(cells), threads=threads)
+    return heights + element.drop_mm
+
+
+def _with_corners(line: FloatArray) -> FloatArray:
+    """A line with the points where an inner corner lies between two of its points: where its sides, drawn on, meet."""
+    u, z = line[:, 0], line[:, 1]
+    slope = np.diff(z) / np.diff(u)
+    left, right, width = slope[:-2], slope[2:], np.diff(u)[1:-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ahead = (z[2:-1] - z[1:-2] - right * width) / (left - right)
+    found = np.flatnonzero((right - left > _CORNER) & (ahead > 0.0) & (ahead < width))
+    corners = np.column_stack((u[found + 1] + ahead[found], z[found + 1] + left[found] * ahead[found]))
+    return np.insert(line, found + 2, corners, axis=0)
+
+
+def _with_walls(line: FloatArray) -> FloatArray:
+    """A line that goes upright where it is nearly so, on the side away from the wall."""
+    step = np.diff(line, axis=0)
+    steep = np.flatnonzero(np.abs(step[:, 1]) > _WALL * step[:, 0])
+    down = step[steep, 1] < 0.0
+    corners = np.column_stack(
+        (np.where(down, line[steep + 1, 0], line[steep, 0]), np.where(down, line[steep, 1], line[steep + 1, 1]))
+    )
+    return np.insert(line, steep + 1, corners, axis=0)

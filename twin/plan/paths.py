@@ -1,0 +1,268 @@
+"""Flow B on one page: part -> slices -> inflated sections -> passes -> links -> arcs -> tool path.
+
+part = prepare(settings, "part.stl")
+path = plan(settings, part)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from twin.arrays import FloatArray
+from twin.cam.arc_fit import FitOptions, Side, fit_path
+from twin.cam.contour import ContourOptions, LevelWay, contour_passes, level_heights, levels_of
+from twin.cam.element import StructuringElement
+from twin.cam.linking import LinkOptions, Pass, Way, link
+from twin.cam.offset import inflated_planes
+from twin.cam.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
+from twin.cam.sections import SlicedPart, slice_part
+from twin.cam.surface import surface_of
+from twin.cam.surface_way import SurfaceWay
+from twin.cam.tip_lines import Places, Profiles, tip_lines
+from twin.cam.to_nc import describe
+from twin.cam.toolpath import ToolPath
+from twin.errors import ToolPathError
+from twin.geometry.outline import box_area, grown
+from twin.geometry.region import Region
+from twin.plan.settings import PathSettings
+from twin.tools.shape import ToolShape
+from twin.tools.text import parse_tool
+
+#: Told of how far the work has come: what is done, and how much of all.
+Report = Callable[[str, float], None]
+#: Chords of inflated sections stand this part of the pitch inside their arcs.
+_CHORD_PITCHES = 0.005
+#: Chords of rows stand no farther off the tip's true line.
+_CHORD_MM = 0.0005
+#: Planes that are inflated between two reports.
+_PLANES_TOGETHER = 32
+#: What a contour's default overhang lacks to the tool's radius, so that flush sides of the stock are left alone.
+_SHORT = 1e-3
+SAFE_ABOVE_MM = 5.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ground:
+    """What a path is planned on.
+
+    Attributes:
+        tool: its shape.
+        part: the part's sections.
+        region_mm: where the tip may be, lower and upper corner, shape (2, 2).
+        overhang_mm: how far it may go beyond that.
+        stock_mm: the stock's box, shape (2, 3).
+        floor_mm: lowest tip.
+        safe_mm: height of rapids.
+    """
+
+    tool: ToolShape
+    part: SlicedPart
+    region_mm: FloatArray
+    overhang_mm: float
+    stock_mm: FloatArray
+    floor_mm: float
+    safe_mm: float
+
+
+def _quiet(what: str, share: float) -> None:
+    """No reports."""
+
+
+def prepare(settings: PathSettings, part: Path | str | SlicedPart, report: Report = _quiet) -> Ground:
+    """Read and slice the part, and settle what depends on its box.
+
+    Raises:
+        MeshError, StockError, ToolError: no solid, a pitch that cannot be, a text that names no tool.
+        ToolPathError: a safe height below the stock's top.
+    """
+    tool = parse_tool(settings.tool)
+    report("slicing", 0.0)
+    sliced = part if isinstance(part, SlicedPart) else slice_part(part, settings.pitch_mm)
+    box = np.array([sliced.slices.low_mm, sliced.slices.high_mm])
+    stock = np.reshape(settings.stock_mm, (2, 3)) if settings.stock_mm else box
+    region = np.reshape(settings.region_mm, (2, 2)) if settings.region_mm else box[:, :2]
+    default = 0.0 if settings.strategy == "scan" else tool.max_radius_mm - _SHORT
+    overhang = default if settings.overhang_mm is None else settings.overhang_mm
+    top = float(stock[1, 2])
+    safe = top + max(SAFE_ABOVE_MM, settings.clearance_mm) if settings.safe_z_mm is None else settings.safe_z_mm
+    _check_steps(settings, tool)
+    if safe < top + settings.clearance_mm:
+        raise ToolPathError(
+            f"safe_z_mm = {safe:g}: expected at least {top + settings.clearance_mm:g}, clearance above the stock's top"
+        )
+    return Ground(
+        tool=tool,
+        part=sliced,
+        region_mm=region,
+        overhang_mm=overhang,
+        stock_mm=stock,
+        floor_mm=float(box[0, 2]) if settings.floor_z_mm is None else settings.floor_z_mm,
+        safe_mm=safe,
+    )
+
+
+def _check_steps(settings: PathSettings, tool: ToolShape) -> None:
+    """Refuses steps that leave walls between passes.
+
+    Raises:
+        ToolPathError: a step-over above the diameter, or layers that clear an area farther apart than the radius.
+    """
+    diameter, radial = 2.0 * tool.nominal_radius_mm, settings.radial_depth_mm or 0.0
+    if settings.strategy == "scan" and settings.stepover_mm > diameter:
+        raise ToolPathError(f"stepover_mm = {settings.stepover_mm:g}: expected at most {diameter:g}, the diameter")
+    most = 0.5 * diameter if settings.layers == 0 else diameter
+    if settings.strategy == "contour" and radial > most:
+        why = "the radius, for layers that clear an area" if settings.layers == 0 else "the diameter"
+        raise ToolPathError(f"radial_depth_mm = {radial:g}: expected at most {most:g}, {why}")
+
+
+def plan(settings: PathSettings, ground: Ground, report: Report = _quiet) -> ToolPath:
+    """The tool path; one without moves where the tool can cut nothing."""
+    passes, way = (_scan if settings.strategy == "scan" else _contour)(settings, ground, report)
+    report("linking", 1.0)
+    moves = link(passes, _link_options(settings, ground), way)
+    made = ToolPath(moves=moves, tool=ground.tool, name=_name(settings), notes=_notes(settings, ground))
+    return _fitted(made, settings)
+
+
+def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple[Pass, ...], Way]:
+    """Rows of all layers, from the outermost to the part's own."""
+    along, across = (0, 1) if settings.direction == "x" else (1, 0)
+    low, high = ground.region_mm + ground.overhang_mm * np.array([[-1.0], [1.0]])
+    at = row_positions(float(low[across]), float(high[across]), settings.stepover_mm)
+    report("profiles", 0.0)
+    profiles = Profiles.of(ground.part.sections(ACROSS[settings.direction]))
+    places = Places.between(float(low[along]), float(high[along]), settings.pitch_mm)
+    element = StructuringElement.tool(ground.tool)
+    passes: list[Pass] = []
+    for layer in reversed(range(settings.layers)):
+        report("rows", 1.0 - (layer + 1) / settings.layers)
+        left = settings.allowance_mm + layer * settings.axial_depth_mm
+        floor = ground.floor_mm + left
+        lines = tip_lines(profiles, element, at, places, floor, allowance_mm=left, chord_mm=_CHORD_MM)
+        rows = Rows(direction=settings.direction, at_mm=at, lines_mm=lines)
+        options = ScanOptions(
+            top_mm=float(ground.stock_mm[1, 2]),
+            zigzag=settings.zigzag,
+            climb=settings.climb,
+            layer=layer,
+            approach_mm=_approach(ground, along, float(low[along]), float(high[along]), settings.clearance_mm),
+        )
+        passes += scan_passes(rows, options)
+    way = SurfaceWay(
+        surface_of(ground.part.mesh.vertices_mm[ground.part.mesh.triangles]),
+        ground.tool,
+        allowance_mm=settings.allowance_mm,
+        remaining_mm=settings.remaining_mm,
+        floor_mm=ground.floor_mm,
+        top_mm=float(ground.stock_mm[1, 2]),
+    )
+    return tuple(passes), way
+
+
+def _approach(
+    ground: Ground, along: int, low: float, high: float, clearance_mm: float
+) -> tuple[float | None, float | None]:
+    """Where the tool is clear of the stock beside the ends of rows; None where rows end inside the stock."""
+    reach = ground.tool.max_radius_mm + clearance_mm
+    first, last = ground.stock_mm[:, along]
+    return (
+        float(min(low, first - reach)) if low <= first + _SHORT else None,
+        float(max(high, last + reach)) if high >= last - _SHORT else None,
+    )
+
+
+def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple[Pass, ...], Way]:
+    top = float(ground.stock_mm[1, 2])
+    heights = level_heights(ground.floor_mm + settings.allowance_mm, top, settings.axial_depth_mm)
+    element = StructuringElement.tool(ground.tool).with_allowance(settings.allowance_mm)
+    regions = _inflated(settings, ground, element, 2, heights[::-1], report)[::-1]
+    levels = levels_of(heights, regions)
+    chord = _CHORD_PITCHES * settings.pitch_mm
+    window = grown(box_area(*ground.region_mm), ground.overhang_mm, chord)
+    stock = grown(box_area(*ground.stock_mm[:, :2]), ground.tool.max_radius_mm - 3.0 * _SHORT, chord)
+    options = ContourOptions(
+        window=window,
+        stock=stock,
+        top_mm=top,
+        layers=settings.layers or None,
+        radial_depth_mm=settings.radial_depth_mm or 0.8 * ground.tool.nominal_radius_mm,
+        climb=settings.climb,
+        chord_mm=chord,
+    )
+    return contour_passes(levels, options), LevelWay(levels, window, top)
+
+
+def _inflated(
+    settings: PathSettings, ground: Ground, element: StructuringElement, axis: int, at: FloatArray, report: Report
+) -> Sequence[Region]:
+    """Sections of the inflated part on planes, some at a time."""
+    sections, chord = ground.part.sections(axis), _CHORD_PITCHES * settings.pitch_mm
+    made: list[Region] = []
+    for first in range(0, len(at), _PLANES_TOGETHER):
+        report("inflating", first / len(at))
+        made += inflated_planes(sections, element, at[first : first + _PLANES_TOGETHER], chord_mm=chord)
+    return made
+
+
+def _link_options(settings: PathSettings, ground: Ground) -> LinkOptions:
+    radius = ground.tool.nominal_radius_mm
+    step = settings.stepover_mm if settings.strategy == "scan" else (settings.radial_depth_mm or 0.8 * radius)
+    return LinkOptions(
+        safe_z_mm=ground.safe_mm,
+        clearance_mm=settings.clearance_mm,
+        feed_mm_min=settings.feed_mm_min,
+        plunge_mm_min=settings.plunge_mm_min,
+        link_mm_min=settings.link_mm_min,
+        lead_mm_min=settings.lead_mm_min,
+        stay_down_mm=3.0 * step if settings.stay_down_mm is None else settings.stay_down_mm,
+        low_links=settings.low_links,
+        entry=settings.entry,
+        ramp_deg=settings.ramp_deg,
+        helix_mm=settings.helix_mm or 0.8 * radius,
+        lead_mm=settings.lead_mm,
+    )
+
+
+def _fitted(path: ToolPath, settings: PathSettings) -> ToolPath:
+    """Needless points left out, arcs fitted."""
+    side: Side = "below" if settings.strategy == "scan" else "right" if settings.climb else "left"
+    tolerance = settings.arcs_mm or settings.thin_mm
+    if tolerance == 0.0:
+        return path
+    options = FitOptions(
+        tolerance_mm=tolerance,
+        gouge_mm=min(settings.gouge_mm, tolerance),
+        material=side,
+        arcs=settings.arcs_mm is not None,
+    )
+    return fit_path(path, options)
+
+
+def _name(settings: PathSettings) -> str:
+    step = (
+        f"step-over {settings.stepover_mm:g}" if settings.strategy == "scan" else f"levels {settings.axial_depth_mm:g}"
+    )
+    return f"{settings.strategy} {step} mm, allowance {settings.allowance_mm:g} mm"
+
+
+def _notes(settings: PathSettings, ground: Ground) -> tuple[str, ...]:
+    """Every setting that is not at its default, for the program's header."""
+    return tuple(_said(settings, ground))
+
+
+def _said(settings: PathSettings, ground: Ground) -> Iterator[str]:
+    yield f"part {Path(ground.part.mesh.name).name}, {describe(ground.tool)}"
+    for key, value in settings.model_dump(exclude_defaults=True).items():
+        if key not in ("strategy", "tool"):
+            yield f"{key} {' '.join(f'{v:g}' for v in value) if isinstance(value, tuple) else value}"
+
+
+def unreachable_bound_mm(settings: PathSettings, radius_mm: float) -> float:
+    """Largest error of a section between two slices that lie a pitch apart: r - sqrt(r^2 - (pitch/2)^2)."""
+    return radius_mm - math.sqrt(max(0.0, radius_mm**2 - (0.5 * settings.pitch_mm) ** 2))

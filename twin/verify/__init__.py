@@ -1,0 +1,1 @@
+"""The machined part against the design: gouges, excess, where and how much."""
