@@ -40,6 +40,7 @@ class FinishingOptions:
         chord_mm: how far the path may lie from the exact one.
         pitch_mm: distance of the places dropped first along a row.
         direction: of the rows.
+        steep_deg: surfaces steeper than this get level lines instead of rows; None for rows everywhere.
         least_mm: material thinner than this is no reason to go there.
         bridge_mm: gaps without material shorter than this are run through.
         feeds: of the stage.
@@ -49,6 +50,7 @@ class FinishingOptions:
     chord_mm: float = 0.005
     pitch_mm: float = 0.3
     direction: Literal["x", "y"] = "x"
+    steep_deg: float | None = None
     least_mm: float = 0.01
     bridge_mm: float = 5.0
     feeds: StageFeeds
@@ -75,9 +77,7 @@ def stepover_for_scallop(cutter: DropCutter, scallop_mm: float) -> float:
     return 2.0 * spacing_for_cusp(cutter.tool, scallop_mm)
 
 
-def scan_rows(
-    cutter: DropCutter, low_mm: FloatArray, high_mm: FloatArray, options: FinishingOptions
-) -> list[Row]:
+def scan_rows(cutter: DropCutter, low_mm: FloatArray, high_mm: FloatArray, options: FinishingOptions) -> list[Row]:
     """Rows over a rectangle of the plan, divided where they bend.
 
     Args:
@@ -134,7 +134,8 @@ def _gathered(across: FloatArray, rows: NDArray[np.int64], ats: FloatArray, zs: 
     rows, ats, zs = rows[order], ats[order], zs[order]
     bounds = np.searchsorted(rows, np.arange(len(across) + 1))
     return [
-        Row(float(y), ats[a:b], zs[a:b]) for y, a, b in zip(across, bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)
+        Row(float(y), ats[a:b], zs[a:b])
+        for y, a, b in zip(across, bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)
     ]
 
 

@@ -78,6 +78,5 @@ def level_rooms(
 def _sections(part: Solid, edges: MeshEdges, planes_mm: FloatArray) -> dict[float, Area]:
     regions = mesh_sections(part.vertices_mm, part.triangles, edges, (2, 0, 1), planes_mm)
     return {
-        z: simplified(area_of(region), 0.5 * CHORD_MM)
-        for z, region in zip(planes_mm.tolist(), regions, strict=True)
+        z: simplified(area_of(region), 0.5 * CHORD_MM) for z, region in zip(planes_mm.tolist(), regions, strict=True)
     }

@@ -135,9 +135,7 @@ def roughing_levels(space: Workspace, options: RoughingOptions) -> list[float]:
     return [max(bottom, space.top_mm - options.axial_depth_mm * (k + 1)) for k in range(count)]
 
 
-def contour_roughing(
-    space: Workspace, tool: ToolShape, options: RoughingOptions, drop: Drop | None = None
-) -> ToolPath:
+def contour_roughing(space: Workspace, tool: ToolShape, options: RoughingOptions, drop: Drop | None = None) -> ToolPath:
     """A path that clears all that the tool can reach from above.
 
     Args:
@@ -224,4 +222,3 @@ def lifted(passes: Sequence[Pass], drop: Drop, allowance_mm: float, resolution_m
         raised = np.column_stack((line[:, :2], np.maximum(line[:, 2], floor)))
         result.append(Pass(points_mm=raised, top_mm=one.top_mm, layer=one.layer))
     return result
-

@@ -9,6 +9,7 @@ import typer
 from twin.cli.export import export
 from twin.cli.info import info
 from twin.cli.mesh import mesh
+from twin.cli.mold import mold
 from twin.cli.replay import replay
 from twin.cli.schema import schema
 from twin.cli.view import view
@@ -24,7 +25,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, mesh, schema):
+for command in (replay, view, info, export, mesh, mold, schema):
     app.command()(command)
 
 
