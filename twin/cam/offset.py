@@ -90,9 +90,7 @@ def _inflated_shapes(
 ) -> Shapes:
     shapes = to_shapes(sections.regions)
     radii = element.z_radii_mm if sections.axis == 2 else element.ball_radii_mm
-    return convolved(
-        shapes, sections.positions_mm, planes_mm, radii, arc_segments(element.radius_mm, chord_mm), threads
-    )
+    return convolved(shapes, sections.positions_mm, planes_mm, radii, arc_segments(element.radius_mm, chord_mm), threads)
 
 
 def inflate_individually(slices: SliceSet, radius_mm: float, *, chord_mm: float | None = None) -> SliceSet:

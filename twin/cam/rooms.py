@@ -18,8 +18,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.geometry.outline import Area, area_of, grown, minus, united
-from twin.geometry.room import Room, simplified
+from twin.geometry.outline import Area, grown, minus
+from twin.geometry.room import Room, simplified, united
+from twin.geometry.shapes import to_shape
 from twin.geometry.slicing import MeshEdges, mesh_sections
 from twin.tools.shape import ToolShape
 from twin.workpiece.from_mesh import Solid
@@ -78,5 +79,5 @@ def level_rooms(
 def _sections(part: Solid, edges: MeshEdges, planes_mm: FloatArray) -> dict[float, Area]:
     regions = mesh_sections(part.vertices_mm, part.triangles, edges, (2, 0, 1), planes_mm)
     return {
-        z: simplified(area_of(region), 0.5 * CHORD_MM) for z, region in zip(planes_mm.tolist(), regions, strict=True)
+        z: simplified(to_shape(region), 0.5 * CHORD_MM) for z, region in zip(planes_mm.tolist(), regions, strict=True)
     }

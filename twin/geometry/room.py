@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import shapely
@@ -39,6 +39,11 @@ class Room:
     def holds_points(self, points_mm: FloatArray) -> FloatArray:
         """Which points, shape (n, 2), lie inside; shape (n,), bool."""
         return np.asarray(shapely.contains_xy(self._eased, points_mm[:, 0], points_mm[:, 1]))
+
+
+def united(areas: Sequence[Area]) -> Area:
+    """Union of areas."""
+    return shapely.union_all(list(areas))
 
 
 def shrunk(area: Area, by_mm: float, chord_mm: float) -> list[Area]:

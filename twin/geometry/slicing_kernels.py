@@ -54,11 +54,7 @@ def weld(points: NDArray[np.int64], ids: NDArray[np.int64], first: NDArray[np.in
 
 @njit(cache=True, nogil=True)
 def number_edges(
-    triangles: NDArray[np.int64],
-    vertices: int,
-    ends: NDArray[np.int64],
-    ways: NDArray[np.int64],
-    sides: NDArray[np.int64],
+    triangles: NDArray[np.int64], vertices: int, ends: NDArray[np.int64], ways: NDArray[np.int64], sides: NDArray[np.int64]
 ) -> int:
     """Number the edges of triangles, by the lower of their vertices.
 
@@ -310,7 +306,9 @@ def _side(au: int, av: int, bu: int, bv: int, cu: int, cv: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def simple_planes(whole: NDArray[np.int64], rings: NDArray[np.int64], planes: int, simple: NDArray[np.bool_]) -> None:
+def simple_planes(
+    whole: NDArray[np.int64], rings: NDArray[np.int64], planes: int, simple: NDArray[np.bool_]
+) -> None:
     """Which planes have rings that neither cross nor touch, material on their left: nothing is to be united there.
 
     Args:
