@@ -9,8 +9,8 @@ from typing import Any
 from twin.cam.to_nc import NcOptions, Operation, write_nc
 from twin.errors import ToolPathError
 from twin.job.model import Tool
-from twin.job.toml_text import toml_text
 from twin.mold.chain import MoldChain, Stage, StageResult
+from twin.plan.replay_job import write_replay_job
 
 _NUMBERS: dict[Stage, int] = {"rough": 1001, "semi": 1002, "finish": 1003}
 _ALL = 1000
@@ -56,7 +56,7 @@ def write_programs(chain: MoldChain, stages: Sequence[Stage], *, force: bool = F
         write_nc(paths[stage], [operations[stage]], _options(chain, stage.upper(), _NUMBERS[stage]))
     if "all" in paths:
         write_nc(paths["all"], list(operations.values()), _options(chain, "ALL STAGES", _ALL))
-        _write_text(paths["job"], toml_text(replay_job(chain, paths["all"])))
+        write_replay_job(paths["job"], replay_tables(chain, paths["all"]), "Replays all stages of the mold.")
     return paths
 
 
@@ -81,7 +81,7 @@ def _options(chain: MoldChain, what: str, number: int) -> NcOptions:
     )
 
 
-def replay_job(chain: MoldChain, program: Path) -> dict[str, Any]:
+def replay_tables(chain: MoldChain, program: Path) -> dict[str, Any]:
     """The tables of a replay's job file for a program."""
     job, space = chain.job, chain.space
     return {
@@ -96,18 +96,3 @@ def replay_job(chain: MoldChain, program: Path) -> dict[str, Any]:
 def _tool_table(tool: Tool) -> dict[str, Any]:
     table = tool.model_dump(mode="python", exclude_none=True, exclude_defaults=True)
     return {key: value for key, value in table.items() if key != "cutting"}
-
-
-def _write_text(path: Path, text: str) -> None:
-    """Whole or not at all.
-
-    Raises:
-        ToolPathError: the file cannot be written.
-    """
-    partial = path.with_name(f"{path.name}.partial")
-    try:
-        partial.write_text(text, encoding="utf-8")
-        partial.replace(path)
-    except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise ToolPathError(f"{path}: cannot be written: {error.strerror}") from error
