@@ -12,6 +12,7 @@ from twin.cli.identify import identify
 from twin.cli.info import info
 from twin.cli.machinable import machinable
 from twin.cli.mesh import mesh
+from twin.cli.mold import mold
 from twin.cli.paths import paths
 from twin.cli.replay import replay
 from twin.cli.schema import schema
@@ -40,6 +41,7 @@ for command in (
     machinable,
     paths,
     verify,
+    mold,
     schema,
 ):
     app.command()(command)
