@@ -67,8 +67,8 @@ def split_unit(header: str) -> tuple[str, str]:
     """A header as name and unit: ``("Fx", "N")`` from ``Fx [N]``, ``Fx_N``, ``Fx (N)``, ``Fx / N``, ``Fx N``.
 
     Returns:
-        the unit is ``""`` when the header holds none. Brackets with signs in them (``mV/V``) count as a unit, so that an
-        unknown one can be refused by name; with words in them (``filtered``) they belong to the name.
+        the unit is ``""`` when the header holds none. Brackets with signs in them (``mV/V``) count as a unit, so
+        that an unknown one can be refused by name; with words in them (``filtered``) they belong to the name.
     """
     text = header.strip().strip("\"'").strip()
     if (found := _BRACKETS.match(text)) and found["base"]:
