@@ -14,7 +14,7 @@ from twin.arrays import FloatArray
 from twin.compare.run_forces import RunForces
 from twin.errors import CompareError
 from twin.measured.log import AXES, ForceLog, Gap
-from twin.measured.uniform import outside_gaps
+from twin.measured.uniform import outside_gaps, richest
 
 #: An overlap shorter than this part of the shorter record counts as none.
 _LEAST_OVERLAP = 0.3
@@ -27,9 +27,10 @@ _REFINED = 3
 #: ... and then neighbours a tooth period away are tried, at most so many on a side.
 _CLIMBED = 40
 #: Most samples that are correlated over all delays; longer records are thinned out first.
-_MOST_SAMPLES = 1 << 22
-#: The simulation is sampled so many times finer before it is band-limited to the log's rate.
+_MOST_SAMPLES = 1 << 20
+#: The simulation is sampled so many times finer, and at this rate at least, before it is band-limited to the log's.
 _FINER = 4
+_FINE_HZ = 20000.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,8 +51,9 @@ class Delay:
 def simulated_at_rate(run: RunForces, begin_s: float, count: int, rate_hz: float) -> FloatArray:
     """Shape (count, 3), the run's force on an even grid, band-limited to its rate."""
     pad = 16
-    fine = run.at(begin_s + (np.arange((count + 2 * pad) * _FINER) / _FINER - pad) / rate_hz)
-    return np.asarray(signal.resample_poly(fine, 1, _FINER, axis=0)[pad : pad + count])
+    finer = max(_FINER, int(np.ceil(_FINE_HZ / rate_hz)))
+    fine = run.at(begin_s + (np.arange((count + 2 * pad) * finer) / finer - pad) / rate_hz)
+    return np.asarray(signal.resample_poly(fine, 1, finer, axis=0)[pad : pad + count])
 
 
 def find_delay(run: RunForces, log: ForceLog, within_s: float | None = None) -> Delay:
@@ -158,7 +160,8 @@ def _refined(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, r
     begin, end = run.span_s
     inside = (log.t_s - lag_s >= begin) & (log.t_s - lag_s <= end)
     first, last = int(np.argmax(inside)), len(inside) - int(np.argmax(inside[::-1]))
-    count = min(last - first, _MOST_SAMPLES)
+    part = richest(log.force_n[first:last] - log.force_n[first:last].mean(axis=0), _MOST_SAMPLES)
+    first, count = first + part.start, part.stop - part.start
     if count < 4:
         return lag_s
     measured = log.force_n[first : first + count][:, axes]

@@ -39,10 +39,16 @@ def show_comparison(forces: ComparedForces, *, rrd: Path | None = None, spawn: b
         file.connect(recording, *viewers)
     else:
         recording.set_sinks(*viewers)
-    recording.set_log_tick_enabled(False)
-    recording.set_log_time_enabled(False)
-    recording.send_blueprint(_blueprint())
-    _send(recording, forces)
+    try:
+        recording.set_log_tick_enabled(False)
+        recording.set_log_time_enabled(False)
+        recording.send_blueprint(_blueprint())
+        _send(recording, forces)
+    except BaseException:
+        recording.disconnect()
+        if file is not None:
+            file.discard()
+        raise
     recording.disconnect()
     if file is not None:
         file.close()
