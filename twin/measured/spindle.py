@@ -46,9 +46,16 @@ def spindle_speed(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpee
     """
     if log.trigger_s is not None and len(log.trigger_s) > 2:
         return SpindleSpeed(rpm=60.0 / float(np.median(np.diff(log.trigger_s))), share=1.0, way="trigger")
-    if log.spindle_angle_rad is not None and abs(turned := float(np.ptp(log.spindle_angle_rad))) > 2.0 * np.pi:
-        return SpindleSpeed(rpm=60.0 * turned / (2.0 * np.pi) / log.duration_s, share=1.0, way="angle")
+    if log.spindle_angle_rad is not None and float(np.ptp(log.spindle_angle_rad)) > 2.0 * np.pi:
+        return SpindleSpeed(rpm=_speed_of(log.t_s, log.spindle_angle_rad), share=1.0, way="angle")
     return _from_spectrum(uniform(log), teeth, abs(expected_rpm))
+
+
+def _speed_of(t_s: FloatArray, angle_rad: FloatArray) -> float:
+    """Speed, rpm, over most of the samples: a spindle may stand at the ends of a log."""
+    ahead = max(1, len(t_s) // 200)
+    speeds = np.abs(angle_rad[ahead:] - angle_rad[:-ahead]) / (t_s[ahead:] - t_s[:-ahead])
+    return 60.0 * float(np.median(speeds)) / (2.0 * np.pi)
 
 
 def _from_spectrum(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpeed | None:
