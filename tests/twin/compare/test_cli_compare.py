@@ -115,6 +115,12 @@ def test_the_jobs_measured_table_is_used(tmp_path: Path, capsys: pytest.CaptureF
     assert "no log given, and its job has no measured.file" in failed(capsys, plain)
 
 
+def test_a_run_against_a_run(archive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = compared(capsys, archive, shutil.copy(archive, tmp_path / "other.mcap"))
+    assert found["lag_s"] == pytest.approx(0.0, abs=1e-6) and found["correlation"] > 0.9999
+    assert found["measured_rpm"] == pytest.approx(3600.0) and found["warnings"] == []
+
+
 def test_an_angle_becomes_time_by_the_speed(archive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = log_of(TOOL, span_s=(3.0, 3.3))
     rows = np.column_stack([np.mod(360.0 * 60.0 * log.t_s, 360.0), log.force_n])
