@@ -15,6 +15,8 @@ from twin.measured.spindle import SpindleSpeed
 
 #: Forces that differ by this factor or its inverse are in another unit.
 _UNIT_FACTORS = (150.0, 7000.0)
+#: For each unit the one a thousand times larger, and the one a thousand times smaller.
+_OTHER_UNITS = {"N": ("kN", "mN"), "kN": ("MN", "N"), "mN": ("N", "uN")}
 _LEVEL_SAMPLES = 50_000
 _SPEED_WITHIN = 0.01
 _POOR_FIT = 0.75
@@ -31,7 +33,8 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
     measured, simulated = _level(log.force_n), _level(even)
     if not measured > 0.0:
         raise CompareError(f"{log.source}: all forces are equal: nothing was measured")
-    for ratio, how, unit in ((simulated / measured, "smaller", "kN"), (measured / simulated, "larger", "mN")):
+    larger, smaller = _OTHER_UNITS.get(log.unit, ("kN", "mN"))
+    for ratio, how, unit in ((simulated / measured, "smaller", larger), (measured / simulated, "larger", smaller)):
         if _UNIT_FACTORS[0] < ratio < _UNIT_FACTORS[1]:
             text = (
                 f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, "
