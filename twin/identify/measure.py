@@ -120,11 +120,15 @@ def straight_window(cut: Cut, log: ForceLog, found: Found, reach_mm: float, rpm:
     return steady
 
 
-def measure(cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, teeth: int, fit: Fit) -> Measured:
+def measure(
+    cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, teeth: int, fit: Fit, seems: float = 1.0
+) -> Measured:
     """Mean and waveform in a window of a log.
 
     Args:
         rpm: spindle speed as given.
+        seems: speed that is found in the simulated force of this window, in parts of the true one: where the engagement
+            changes the force runs ahead of the spindle or behind it.
 
     Raises:
         IdentifyError: fewer than two revolutions in the window.
@@ -136,14 +140,17 @@ def measure(cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, tee
     f = log.force_n[inside] - zero.at(t)
     samples = log.rate_hz * 60.0 / rpm
     if samples > 2.5 * teeth:
-        rpm, told = _speed(replace(log, t_s=t, force_n=f, spindle_angle_rad=None, trigger_s=None), rpm, teeth, fit)
+        rpm, told = _speed(
+            replace(log, t_s=t, force_n=f, spindle_angle_rad=None, trigger_s=None), rpm, teeth, fit, seems
+        )
         notes += told
     mean, error, used = _mean(t, f, 60.0 / rpm)
     measured = np.array([axis in log.axes for axis in AXES])
     count = harmonic_count(fit, teeth, rpm, samples)
     harmonics = noise = None
     if count >= 1 and inside.sum() > 4 * count:
-        harmonics, noise = of_samples(t, f, rpm * 2.0 * math.pi / 60.0, count)
+        turns = (t >= used[0]) & (t < used[1])
+        harmonics, noise = of_samples(t[turns], f[turns], rpm * 2.0 * math.pi / 60.0, count)
     notes += [zero.note, f"steady cut from {used[0]:.3f} to {used[1]:.3f} s, {'as given' if cut.window_s else 'found'}"]
     return Measured(
         mean_n=np.where(measured, mean, math.nan),
@@ -183,14 +190,14 @@ def _inside(log: ForceLog, window: Span, rpm: float) -> NDArray[np.bool_]:
     return np.asarray((log.t_s >= window[0]) & (log.t_s <= window[1]))
 
 
-def _speed(log: ForceLog, rpm: float, teeth: int, fit: Fit) -> tuple[float, list[str]]:
+def _speed(log: ForceLog, rpm: float, teeth: int, fit: Fit, seems: float) -> tuple[float, list[str]]:
     """The speed of the waveform in a window; the given one where that is asked, or where none near it stands out."""
     seen = spindle_speed(log, teeth, rpm)
     if seen is not None and abs(seen.rpm / rpm - 1.0) > SPEED_RANGE:
         return rpm, [f"{SPEED_DOUBT}: the force repeats as at {seen.rpm:.0f} rpm, {rpm:g} rpm is given and taken"]
     if fit.speed == "given":
         return rpm, []
-    found = find_speed(log.t_s, log.force_n, rpm, teeth)
+    found = find_speed(log.t_s, log.force_n, rpm, teeth) / seems
     if abs(found / rpm - 1.0) > 0.98 * SPEED_RANGE:
         return rpm, [f"{SPEED_DOUBT}: none found within {100 * SPEED_RANGE:g} % of {rpm:g} rpm, which is taken"]
     return found, [f"spindle speed {found:.2f} rpm found, {rpm:g} given"]
