@@ -60,6 +60,15 @@ def compare(
         float | None,
         typer.Option(metavar="HZ", help="Sampling rate of the log.", rich_help_panel=_READING, show_default=False),
     ] = None,
+    rpm: Annotated[
+        float | None,
+        typer.Option(
+            metavar="RPM",
+            help="Makes time of a column of the spindle's angle.",
+            rich_help_panel=_READING,
+            show_default=False,
+        ),
+    ] = None,
     delimiter: Annotated[
         str | None,
         typer.Option(metavar="CHAR", help="Delimiter of a text file.", rich_help_panel=_READING, show_default=False),
@@ -171,6 +180,7 @@ def compare(
         columns=columns,
         unit=unit,
         rate_hz=rate,
+        rpm=rpm,
         delimiter=delimiter,
         decimal=decimal,
         group=group,

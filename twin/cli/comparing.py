@@ -32,6 +32,7 @@ class Asked:
     columns: str | None = None
     unit: str | None = None
     rate_hz: float | None = None
+    rpm: float | None = None
     delimiter: str | None = None
     decimal: str | None = None
     group: str | None = None
@@ -65,11 +66,10 @@ def run_one(run: Path, measured: Path | None, asked: Asked, outputs: Outputs) ->
     Raises:
         TwinError: a mistake that the user can mend.
     """
-    from twin.archive import run_info
     from twin.cli.console import results, warn
 
-    job = _job_settings(run_info(run).header.parameters)
-    log = measured or (Path(job["file"]) if "file" in job else None)
+    job = _job_settings(run)
+    log = measured or _job_log(run, job)
     if log is None:
         raise CompareError(f"{run}: no log given, and its job has no measured.file; expected RUN.mcap MEASURED")
     found = compare_files(run, log, settings_of(asked, job))
@@ -93,7 +93,7 @@ def run_batch(table: Path, asked: Asked, outputs: Outputs) -> None:
     from twin.compare.batch import batch_csv, compare_batch
 
     rows = []
-    for row in compare_batch(table, settings_of(asked, {})):
+    for row in compare_batch(table, lambda run: settings_of(asked, _job_settings(run))):
         rows.append(row)
         if row.found is None:
             fail(f"{table}, row {row.number} ({row.name}): {row.message}")
@@ -144,6 +144,7 @@ def settings_of(asked: Asked, job: Mapping[str, str]) -> ask.CompareSettings:
         decimal=asked.decimal or job.get("decimal"),
         group=asked.group or job.get("group"),
         rate_hz=rate,
+        rpm=asked.rpm,
         unit=asked.unit or job.get("unit"),
     )
     phase: Any = "causal" if asked.causal else "zero"
@@ -164,8 +165,20 @@ def settings_of(asked: Asked, job: Mapping[str, str]) -> ask.CompareSettings:
     )
 
 
-def _job_settings(parameters: Mapping[str, str]) -> dict[str, str]:
+def _job_log(run: Path, job: Mapping[str, str]) -> Path | None:
+    """The job's log: where the job said, else beside the run or in the folder above, for runs that were moved."""
+    if "file" not in job:
+        return None
+    told = Path(job["file"])
+    places = (told, run.parent / told.name, run.parent.parent / told.name)
+    return next((p for p in places if p.is_file()), told)
+
+
+def _job_settings(run: Path) -> dict[str, str]:
     """The job's ``[measured]`` table, as the run's archive keeps it."""
+    from twin.archive import run_info
+
+    parameters = run_info(run).header.parameters
     return {k.removeprefix(_TABLE): v for k, v in parameters.items() if k.startswith(_TABLE)}
 
 

@@ -14,7 +14,7 @@ from twin.arrays import FloatArray
 from twin.compare.run_forces import RunForces
 from twin.errors import CompareError
 from twin.measured.log import AXES, ForceLog, Gap
-from twin.measured.uniform import outside_gaps
+from twin.measured.uniform import outside_gaps, richest
 
 #: An overlap shorter than this part of the shorter record counts as none.
 _LEAST_OVERLAP = 0.3
@@ -27,9 +27,10 @@ _REFINED = 3
 #: ... and then neighbours a tooth period away are tried, at most so many on a side.
 _CLIMBED = 40
 #: Most samples that are correlated over all delays; longer records are thinned out first.
-_MOST_SAMPLES = 1 << 22
-#: The simulation is sampled so many times finer before it is band-limited to the log's rate.
+_MOST_SAMPLES = 1 << 20
+#: The simulation is sampled so many times finer, and at this rate at least, before it is band-limited to the log's.
 _FINER = 4
+_FINE_HZ = 20000.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,8 +51,9 @@ class Delay:
 def simulated_at_rate(run: RunForces, begin_s: float, count: int, rate_hz: float) -> FloatArray:
     """Shape (count, 3), the run's force on an even grid, band-limited to its rate."""
     pad = 16
-    fine = run.at(begin_s + (np.arange((count + 2 * pad) * _FINER) / _FINER - pad) / rate_hz)
-    return np.asarray(signal.resample_poly(fine, 1, _FINER, axis=0)[pad : pad + count])
+    finer = max(_FINER, int(np.ceil(_FINE_HZ / rate_hz)))
+    fine = run.at(begin_s + (np.arange((count + 2 * pad) * finer) / finer - pad) / rate_hz)
+    return np.asarray(signal.resample_poly(fine, 1, finer, axis=0)[pad : pad + count])
 
 
 def find_delay(run: RunForces, log: ForceLog, within_s: float | None = None) -> Delay:
@@ -121,15 +123,23 @@ class _Grid:
         coefficient = np.where(weight > 0.0, coefficient, 0.0)
         return coefficient, weight, self.log_begin_s - self.run_begin_s + shifts / self.rate_hz
 
-    def _sums(self, log_axis: int, run_axis: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Covariance and variances over the overlap, times its length, and the length, at every shift."""
-        m = self.log_n[:, log_axis] - self.log_n[:, log_axis].mean()
-        s = self.run_n[:, run_axis] - self.run_n[:, run_axis].mean()
+    def _sums(
+        self, log_axis: int, run_axis: int, *, centred: bool = True
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Covariance and variances over the overlap, times its length, and the length, at every shift.
+
+        Args:
+            centred: False leaves the means in: sums of products and squares.
+        """
+        m, s = self.log_n[:, log_axis], self.run_n[:, run_axis]
+        if centred:
+            m, s = m - m.mean(), s - s.mean()
         shifts = np.arange(-(len(s) - 1), len(m))
         in_m = np.maximum(shifts, 0), np.minimum(shifts + len(s), len(m))
         in_s = np.maximum(-shifts, 0), np.minimum(len(m) - shifts, len(s))
         count = (in_m[1] - in_m[0]).astype(float)
-        sum_m, sum_s = _total(m, *in_m), _total(s, *in_s)
+        sum_m = _total(m, *in_m) if centred else np.zeros(len(shifts))
+        sum_s = _total(s, *in_s) if centred else np.zeros(len(shifts))
         both = np.asarray(signal.correlate(m, s, mode="full", method="fft")) - sum_m * sum_s / count
         var_m = _total(m * m, *in_m) - sum_m**2 / count
         var_s = _total(s * s, *in_s) - sum_s**2 / count
@@ -150,7 +160,8 @@ def _refined(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, r
     begin, end = run.span_s
     inside = (log.t_s - lag_s >= begin) & (log.t_s - lag_s <= end)
     first, last = int(np.argmax(inside)), len(inside) - int(np.argmax(inside[::-1]))
-    count = min(last - first, _MOST_SAMPLES)
+    part = richest(log.force_n[first:last] - log.force_n[first:last].mean(axis=0), _MOST_SAMPLES)
+    first, count = first + part.start, part.stop - part.start
     if count < 4:
         return lag_s
     measured = log.force_n[first : first + count][:, axes]
@@ -231,6 +242,8 @@ def _top(scores: FloatArray, at: int) -> float:
 def better_axes(run: RunForces, log: ForceLog) -> tuple[dict[str, str], float]:
     """Which signed axis of the log fits each axis of the run best, at its own best delay, and the score of that.
 
+    The means count here: in a steady slot two turned signs are half a tooth period of delay, and only means tell them.
+
     Returns:
         for x, y, z of the tool the signed axis of the log as it is now, e.g. ``{"x": "-y", ...}``.
     """
@@ -238,7 +251,7 @@ def better_axes(run: RunForces, log: ForceLog) -> tuple[dict[str, str], float]:
     axes = [AXES.index(a) for a in log.axes]
     if len(axes) < 3:
         return {a: a for a in log.axes}, 0.0
-    sums = {(i, j): grid._sums(i, j) for i in axes for j in axes}
+    sums = {(i, j): grid._sums(i, j, centred=False) for i in axes for j in axes}
     count = sums[axes[0], axes[0]][3]
     shorter = min(len(grid.run_n), len(grid.log_n))
     weight = np.where(count >= _LEAST_OVERLAP * shorter, np.sqrt(count / shorter), 0.0)

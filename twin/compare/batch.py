@@ -31,6 +31,7 @@ _KEYS: dict[str, Callable[[CompareSettings, str], CompareSettings]] = {
     "force_on": lambda s, t: replace(s, read=replace(s.read, force_on=_body(t))),
     "unit": lambda s, t: replace(s, read=replace(s.read, unit=t)),
     "rate_hz": lambda s, t: replace(s, read=replace(s.read, rate_hz=_number("rate_hz", t))),
+    "rpm": lambda s, t: replace(s, read=replace(s.read, rpm=_number("rpm", t))),
     "columns": lambda s, t: replace(s, read=replace(s.read, columns=tuple(c.strip() for c in t.split(",")))),
     "group": lambda s, t: replace(s, read=replace(s.read, group=t)),
 }
@@ -61,13 +62,13 @@ class Row:
     message: str
 
 
-def compare_batch(path: Path, settings: CompareSettings) -> Iterator[Row]:
+def compare_batch(path: Path, settings: Callable[[Path], CompareSettings]) -> Iterator[Row]:
     """Carry out a table's comparisons one after the other; a bad row gives its message and does not stop the others.
 
     Args:
         path: ``.csv`` with a header, or ``.toml`` with ``[[compare]]`` tables: ``run``, ``measured``, optional ``name``
             and the settings of the row. Files are relative to the table's folder.
-        settings: what rows do not say.
+        settings: for a run's file, what its row does not say.
 
     Raises:
         CompareError: the table itself cannot be read.
@@ -108,7 +109,7 @@ def batch_csv(rows: list[Row]) -> str:
     return out.getvalue()
 
 
-def _compared(path: Path, cells: Mapping[str, str], settings: CompareSettings) -> Comparison:
+def _compared(path: Path, cells: Mapping[str, str], settings: Callable[[Path], CompareSettings]) -> Comparison:
     for key in cells:
         if key not in _KEYS and key not in _OTHER:
             known = ", ".join((*_OTHER, *_KEYS))
@@ -116,10 +117,12 @@ def _compared(path: Path, cells: Mapping[str, str], settings: CompareSettings) -
     for key in _NEEDED:
         if not cells.get(key):
             raise CompareError(f"{key} is missing; expected a file name, relative to {path.parent}")
+    run = path.parent / cells["run"]
+    made = settings(run)
     for key, take in _KEYS.items():
         if cells.get(key):
-            settings = take(settings, cells[key])
-    return compare_files(path.parent / cells["run"], path.parent / cells["measured"], settings)
+            made = take(made, cells[key])
+    return compare_files(run, path.parent / cells["measured"], made)
 
 
 def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:

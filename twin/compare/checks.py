@@ -15,8 +15,9 @@ from twin.measured.spindle import SpindleSpeed
 
 #: Forces that differ by this factor or its inverse are in another unit.
 _UNIT_FACTORS = (150.0, 7000.0)
+_LEVEL_SAMPLES = 50_000
 _SPEED_WITHIN = 0.01
-_POOR_FIT = 0.7
+_POOR_FIT = 0.75
 _FAR_BETTER = 0.15
 #: Delays that fit as well are worth a word when they lie this part of the log apart.
 _FAR_RIVALS = 0.25
@@ -28,14 +29,15 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
     Raises:
         CompareError: they are, and the unit was not given.
     """
-    measured, simulated = _level(log.force_n - np.median(log.force_n, axis=0)), _level(run.force_n)
+    even = run.at(np.linspace(*run.span_s, _LEVEL_SAMPLES))
+    measured, simulated = _level(log.force_n), _level(even)
     if not measured > 0.0:
         raise CompareError(f"{log.source}: all forces are equal: nothing was measured")
     for ratio, how, unit in ((simulated / measured, "smaller", "kN"), (measured / simulated, "larger", "mN")):
         if _UNIT_FACTORS[0] < ratio < _UNIT_FACTORS[1]:
             text = (
-                f"{log.source}: forces are {ratio:.0f} times {how} than the run's (level {measured:.4g} N, expected "
-                f"about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any --unit makes this a warning"
+                f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, "
+                f"expected about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any makes it a warning"
             )
             if settings.read.unit is None:
                 raise CompareError(text)
@@ -43,8 +45,9 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
 
 
 def _level(force_n: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> float:
-    """High level of the resultant, without its peaks."""
-    return float(np.percentile(np.sqrt(np.sum(force_n**2, axis=1)), 90.0))
+    """High level of the resultant less its middle, single spikes left out; a cut may be a small part of a record."""
+    moving = force_n - np.median(force_n, axis=0)
+    return float(np.percentile(np.sqrt(np.sum(moving**2, axis=1)), 99.8))
 
 
 def check_rate(log: ForceLog, rpm: float, teeth: int) -> Iterator[str]:
@@ -89,24 +92,30 @@ def check_overlap(run: RunForces, log: ForceLog, lag_s: float) -> Gap:
     return both
 
 
-def check_fit(run: RunForces, log: ForceLog, score: float, settings: CompareSettings) -> Iterator[str]:
-    """A poor likeness: are the axes right?"""
-    if score >= _POOR_FIT:
+def check_fit(run: RunForces, log: ForceLog, score: float, likeness: float, settings: CompareSettings) -> Iterator[str]:
+    """A poor likeness: are the axes right?
+
+    Args:
+        score: correlation, each axis less its mean.
+        likeness: the same with the means left in.
+    """
+    if min(score, likeness) >= _POOR_FIT:
         return
     axes, better = better_axes(run, log)
-    if better > max(score, 0.0) + _FAR_BETTER and any(axes[a] != a for a in axes):
+    if better > max(likeness, 0.0) + _FAR_BETTER and any(axes[a] != a for a in axes):
+        turned = ", ".join(f"{a} = {axes[a]}" for a in AXES)
         yield (
-            f"{log.source}: correlation {score:.2f}; {better:.2f} with {', '.join(f'{a} = {axes[a]}' for a in AXES)} "
-            f"of the log as it is mapped now: try {_hint(axes, log, settings)}"
+            f"{log.source}: likeness {likeness:.2f}, means included; {better:.2f} with {turned} of the log as it is "
+            f"mapped now: try {_hint(axes, log, settings)}"
         )
-    elif settings.lag != "auto" and better > max(score, 0.0) + _FAR_BETTER:
+    elif settings.lag != "auto" and better > max(likeness, 0.0) + _FAR_BETTER:
         found = find_delay(run, log)
         yield (
             f"{log.source}: correlation {score:.2f} with the lag given, {found.score:.2f} with {found.lag_s:.6f} s: "
             "try --lag auto"
         )
-    else:
-        yield f"{log.source}: correlation {score:.2f} at best: the log does not look like the run"
+    elif score < _POOR_FIT:
+        yield f"{log.source}: correlation {score:.2f}: the log does not look much like the run"
 
 
 def _hint(axes: dict[str, str], log: ForceLog, settings: CompareSettings) -> str:

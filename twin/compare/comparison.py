@@ -103,6 +103,7 @@ def compare_files(run: str | PathLike[str], measured: str | PathLike[str], setti
         delimiter=how.delimiter,
         decimal=how.decimal,
         group=how.group,
+        rpm=how.rpm,
     )
     log = force_log(raw, how.axis_map, force_on=how.force_on, unit=how.unit)
     return compare(read_run_forces(Path(run)), log, settings)
@@ -135,7 +136,7 @@ def compare(run: RunForces, log: ForceLog, settings: CompareSettings) -> Compari
     score = _score(both, log)
     if delay is not None:
         warnings += checks.check_delay(delay, log)
-    warnings += checks.check_fit(run, log, score, settings)
+    warnings += checks.check_fit(run, log, score, _score(both, log, centred=False), settings)
     windows = tuple(_windows(run, log, both, overlap, settings))
     return Comparison(
         run=run,
@@ -245,11 +246,12 @@ def _simulation(
     return lambda t_s: np.column_stack([np.interp(t_s, grid, force[:, axis]) for axis in range(3)])
 
 
-def _score(both: _Both, log: ForceLog) -> float:
-    """Correlation over the whole overlap, all measured axes together."""
+def _score(both: _Both, log: ForceLog, *, centred: bool = True) -> float:
+    """Correlation over the whole overlap, all measured axes together, each less its mean or with it."""
     axes = [AXES.index(a) for a in log.axes]
     m, s = both.measured_n[:, axes], both.simulated_n[:, axes]
-    m, s = m - m.mean(axis=0), s - s.mean(axis=0)
+    if centred:
+        m, s = m - m.mean(axis=0), s - s.mean(axis=0)
     power = float(np.sqrt(np.sum(m * m) * np.sum(s * s)))
     return float(np.sum(m * s)) / power if power > 0.0 else 0.0
 

@@ -37,7 +37,9 @@ def whole_record(found: Comparison) -> bytes:
         _curve(part, found.t_s, found.simulated_n[:, i], _COLORS[axis], "simulated", 0.75)
         for window in found.windows:
             if not window.whole:
-                part.axvspan(*window.span_s, color="#f2b800", alpha=0.8, lw=1.2)
+                part.axvspan(*window.span_s, color="#ffe28a", lw=0, zorder=0)
+                for edge in window.span_s:
+                    part.axvline(edge, color="#d99a00", lw=0.8, zorder=4)
         _dress(part, f"F{axis}, N")
     parts[-1].set_xlabel("run time, s")
     return _png(figure)
@@ -115,7 +117,7 @@ def error_histogram(found: Comparison) -> bytes:
 def polar(found: Comparison, window: WindowResult) -> bytes:
     """Force against the spindle's angle: mean and range of the measurement over the turns, mean of the simulation."""
     axes = found.log.axes
-    figure = Figure(figsize=(_WIDTH, 3.6), dpi=_DPI, layout="constrained")
+    figure = Figure(figsize=(_WIDTH, 3.05), dpi=_DPI, layout="constrained")
     names = [*axes, "resultant"] if len(axes) > 1 else list(axes)
     for k, axis in enumerate(names):
         part = figure.add_subplot(1, len(names), k + 1, projection="polar")

@@ -23,7 +23,7 @@ class ReadSettings:
     Attributes:
         axis_map: None takes the columns that are named after the axes.
         force_on: the body that the mapped force acts on.
-        columns, delimiter, decimal, group, rate_hz: see `twin.measured.read_log`.
+        columns, delimiter, decimal, group, rate_hz, rpm: see `twin.measured.read_log`.
         unit: of the force columns.
     """
 
@@ -34,6 +34,7 @@ class ReadSettings:
     decimal: str | None = None
     group: str | None = None
     rate_hz: float | None = None
+    rpm: float | None = None
     unit: str | None = None
 
 

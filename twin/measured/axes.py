@@ -19,12 +19,13 @@ _EXAMPLE = "x=-Fy,y=-Fx,z=Fz"
 _FORCE_NAMES = tuple(
     re.compile(pattern, re.IGNORECASE)
     for pattern in (
-        r"(?:^|[\s_./:-])f[\s_.-]*{axis}(?:$|[\s_./:-])",
+        r"(?:^|[\s_./:-])f[\s_.-]*{axis}(?:$|[\s_./:(\d-])",
         r"(?:force|kraft|load|kraefte|kräfte|fuerza|effort)[\s_.:-]*{axis}(?:$|[\s_./:-])",
         r"(?:^|[\s_./:-]){axis}[\s_.:-]*(?:axis)?[\s_.:-]*(?:force|kraft|load|effort)",
         r"^{axis}$",
     )
 )
+_NOT_MEASURED = re.compile(r"(?:^|[\s_.(-])(?:sim|simul|model|pred|calc|comp|theor|fit|est)", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,12 +101,16 @@ def aliases(columns: Iterable[str]) -> dict[str, str]:
 
 
 def guess_map(columns: Iterable[str]) -> AxisMap | None:
-    """The map that the names themselves tell, ``x=Fx,y=Fy,z=Fz``; None where they do not, or tell it twice."""
+    """The map that the names themselves tell, ``x=Fx,y=Fy,z=Fz``; None where they do not, or tell it twice.
+
+    Where measured and computed forces stand side by side, those that are named as computed are left out.
+    """
     names = list(columns)
-    for pattern in _FORCE_NAMES:
-        found = {axis: [n for n in names if _matches(pattern, axis, n)] for axis in AXES}
-        if all(len(found[axis]) == 1 for axis in AXES):
-            return AxisMap(tuple((axis, found[axis][0]) for axis in AXES))
+    for among in (names, [n for n in names if not _NOT_MEASURED.search(n)]):
+        for patterns in (*((p,) for p in _FORCE_NAMES), _FORCE_NAMES[:-1]):
+            found = {axis: [n for n in among if any(_matches(p, axis, n) for p in patterns)] for axis in AXES}
+            if all(len(found[axis]) == 1 for axis in AXES):
+                return AxisMap(tuple((axis, found[axis][0]) for axis in AXES))
     return None
 
 

@@ -11,10 +11,9 @@ from twin.arrays import FloatArray, frozen
 from twin.errors import MeasuredError
 from twin.measured.axes import AxisMap, Term, aliases, guess_map
 from twin.measured.log import AXES, Channel, ForceLog, RawLog, gaps_of, vector
-from twin.measured.units import find_unit
+from twin.measured.units import ANGLE_NAME, find_unit
 from twin.record import ForceOn
 
-_ANGLE = re.compile(r"angle|phi\b|theta|winkel|encoder|rotat|spindle[\s_]*pos", re.IGNORECASE)
 _TRIGGER = re.compile(r"trig|tacho|pulse|once|key[\s_]*phas|\bindex\b|z[\s_]*phase|marker", re.IGNORECASE)
 
 
@@ -155,7 +154,7 @@ def _angle(
     given: str | None,
     used: Iterable[str],
 ) -> tuple[FloatArray | None, list[str]]:
-    channel = _find(raw, names, given, _ANGLE, used)
+    channel = _find(raw, names, given, ANGLE_NAME, used)
     if channel is None:
         return None, []
     known = find_unit(channel.unit) if channel.unit else None

@@ -16,6 +16,10 @@ Gap: TypeAlias = tuple[float, float]
 AXES = ("x", "y", "z")
 #: Two samples further apart than so many sampling intervals have a gap between them.
 GAP_INTERVALS = 1.75
+#: Samples are uneven when half of the steps are off by more than this part of the interval ...
+UNEVEN = 0.1
+#: ... and have a gap where a step is so many times longer than nearly all of them.
+UNEVEN_GAP = 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,12 +130,15 @@ class ForceLog:
 
 
 def gaps_of(t_s: FloatArray, rate_hz: float) -> tuple[Gap, ...]:
-    """Places where the time makes a leap.
+    """Places where the time makes a leap; in samples that are uneven all along, a leap far beyond their steps.
 
     Args:
         t_s: shape (n,), increasing.
     """
-    leaps = np.flatnonzero(np.diff(t_s) > GAP_INTERVALS / rate_hz)
+    steps = np.diff(t_s) * rate_hz
+    uneven = len(steps) > 0 and float(np.median(np.abs(steps - 1.0))) > UNEVEN
+    most = UNEVEN_GAP * float(np.percentile(steps, 95.0)) if uneven else GAP_INTERVALS
+    leaps = np.flatnonzero(steps > most)
     return tuple((float(t_s[i]), float(t_s[i + 1])) for i in leaps)
 
 

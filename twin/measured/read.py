@@ -27,6 +27,7 @@ def read_log(
     delimiter: str | None = None,
     decimal: str | None = None,
     group: str | None = None,
+    rpm: float | None = None,
 ) -> RawLog:
     """Read a measured log of any known format; the format is told by what the file holds, not by its suffix.
 
@@ -36,6 +37,7 @@ def read_log(
         delimiter: of a text file, ``""`` for white space; found if not given.
         decimal: decimal mark of a text file, ``.`` or ``,``; found if not given.
         group: group of a TDMS or HDF5 file, variable of a MATLAB file, topic of an MCAP file; found if not given.
+        rpm: spindle speed that makes time of a column of the spindle's angle, where there is none of time.
 
     Raises:
         MeasuredError: not readable; the message names file, line or column, and what was expected.
@@ -48,7 +50,7 @@ def read_log(
         table = _read(path, columns, delimiter, decimal, group)
     except OSError as error:
         raise MeasuredError(f"{path}: cannot be read: {(error.strerror or str(error)).lower()}") from error
-    return raw_log(path, table, rate_hz)
+    return raw_log(path, table, rate_hz, rpm)
 
 
 def _read(

@@ -9,7 +9,7 @@ from scipy.optimize import minimize_scalar
 
 from twin.arrays import FloatArray
 from twin.measured.log import ForceLog
-from twin.measured.uniform import pieces, uniform
+from twin.measured.uniform import active, pieces, richest, uniform
 
 #: Multiples of the tooth-passing frequency that are looked at.
 _MOST_LINES = 8
@@ -54,7 +54,9 @@ def spindle_speed(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpee
 def _from_spectrum(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpeed | None:
     """Search for the comb on a grid finer than the spectrum's resolution, then refine."""
     part = max(pieces(log), key=lambda s: s.stop - s.start)
-    force = log.force_n[part][:_MOST_SAMPLES]
+    force = log.force_n[part] - log.force_n[part].mean(axis=0)
+    force = force[active(force)]
+    force = force[richest(force, _MOST_SAMPLES)]
     n = len(force)
     passing = teeth * expected_rpm / 60.0
     low, high = _SEARCHED[0] * passing, _SEARCHED[1] * passing
@@ -68,7 +70,7 @@ def _from_spectrum(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpe
     found = np.arange(low, high, 0.5 * step)
     scores = _comb(power, step, found, log.rate_hz)
     best = float(found[np.argmax(scores)])
-    hz = _refined(moving[:_FINE_SAMPLES], log.rate_hz, best, step)
+    hz = _refined(moving[richest(moving, _FINE_SAMPLES)], log.rate_hz, best, step)
     share = _share(power, step, hz, log.rate_hz, n)
     if share < _LEAST_SHARE:
         return None

@@ -25,6 +25,8 @@ _INTERVAL = re.compile(
     re.IGNORECASE,
 )
 _COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+|;+|')\s*")
+#: A name with its unit in brackets, in a line that is set apart by blanks.
+_WITH_UNIT = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +77,12 @@ def find_header(
 def _fields(line: str, layout: Layout) -> list[str]:
     """Fields of a line above the numbers, without the mark of a comment."""
     bare = _COMMENT.sub("", line, count=1)
-    return fields_of(bare, layout.delimiter)
+    fields = fields_of(bare, layout.delimiter)
+    if layout.delimiter is None and len(fields) != layout.width:
+        for wider in (re.split(r"\s{2,}|\t", bare.strip()), _WITH_UNIT.findall(bare)):
+            if len(wider) == layout.width:
+                return [f.strip() for f in wider]
+    return fields
 
 
 def _units_row(above: Sequence[list[str]], layout: Layout) -> list[str] | None:
@@ -83,9 +90,11 @@ def _units_row(above: Sequence[list[str]], layout: Layout) -> list[str] | None:
     if not above or len(above[-1]) > layout.width:
         return None
     row = above[-1]
-    known = [is_unit_text(f) for f in row if f not in ("", "-", "[]", "[-]", "()")]
-    looks = known and sum(known) >= 0.5 * len(known) and (len(row) == layout.width or len(above) > 1)
-    if not looks or any(find_unit(f) is None and len(f) > 8 for f in row):
+    told = [f for f in row if f not in ("", "-", "[]", "[-]", "()")]
+    known = sum(is_unit_text(f) or f[:1] in "[(" for f in told)
+    named_above = len(above) > 1 and _is_names(above[-2], layout)
+    needed = 0.5 * len(told) if named_above else len(told)
+    if not told or known < needed or any(find_unit(f) is None and len(f) > 8 for f in row):
         return None
     return [f.strip("[](){}<> ") for f in row] + [""] * (layout.width - len(row))
 

@@ -11,7 +11,7 @@ from twin.arrays import FloatArray
 from twin.errors import MeasuredError
 from twin.measured.log import Channel, RawLog, gaps_of, vector
 from twin.measured.table import Table
-from twin.measured.units import TIME_NAME, find_unit, split_unit
+from twin.measured.units import ANGLE_NAME, TIME_NAME, find_unit, split_unit
 
 #: A given rate and the one of the time column may differ by so much before it is worth a note.
 _SAME_RATE = 0.01
@@ -19,11 +19,12 @@ _SAME_RATE = 0.01
 _PLAUSIBLE_HZ = (20.0, 1e7)
 
 
-def raw_log(path: Path, table: Table, rate_hz: float | None = None) -> RawLog:
+def raw_log(path: Path, table: Table, rate_hz: float | None = None, rpm: float | None = None) -> RawLog:
     """Find the time and make the log.
 
     Args:
         rate_hz: sampling rate given by the user; it wins over the file.
+        rpm: makes time of a column of the spindle's angle, where there is none of time.
 
     Raises:
         MeasuredError: neither a time column nor a rate; time that goes back; an unknown unit of time.
@@ -31,6 +32,9 @@ def raw_log(path: Path, table: Table, rate_hz: float | None = None) -> RawLog:
     if rate_hz is not None and not 0.0 < rate_hz < np.inf:
         raise MeasuredError(f"{path}: sampling rate {rate_hz:g} Hz, expected a number above 0")
     at, notes = _time_column(table)
+    if at is None and rate_hz is None and rpm is not None and (angle := angle_column(table)) is not None:
+        table = _timed_by_angle(path, table, angle, rpm)
+        at = len(table.names) - 1
     if at is None:
         t_s, rate, rows, more = _counted(path, table, rate_hz)
     else:
@@ -77,11 +81,48 @@ def _is_time(table: Table, index: int) -> bool:
     return not unit and TIME_NAME.match(base) is not None
 
 
+def angle_column(table: Table) -> int | None:
+    """Index of the only column of an angle, by its unit or name."""
+    found = []
+    for index, name in enumerate(table.names):
+        base, unit = split_unit(name)
+        known = find_unit(unit or table.units[index])
+        if (known is not None and known[0] == "angle") or (known is None and ANGLE_NAME.search(base)):
+            found.append(index)
+    return found[0] if len(found) == 1 else None
+
+
+def _timed_by_angle(path: Path, table: Table, index: int, rpm: float) -> Table:
+    """The table with a column of time behind the others, counted by a spindle angle."""
+    if not rpm > 0.0:
+        raise MeasuredError(f"{path}: spindle speed {rpm:g} rpm, expected a number above 0")
+    name = table.names[index]
+    known = find_unit(split_unit(name)[1] or table.units[index])
+    values = table.values[:, index]
+    size = known[1] if known is not None else 1.0 if np.nanmax(np.abs(values)) < 7.0 else np.pi / 180.0
+    good = np.isfinite(values)
+    turned = np.full(len(values), np.nan)
+    turned[good] = np.unwrap(values[good] * size)
+    t_s = (turned - turned[good][0]) / (2.0 * np.pi * rpm / 60.0)
+    return replace(
+        table,
+        names=(*table.names, "time by angle"),
+        units=(*table.units, "s"),
+        values=np.column_stack([table.values, t_s]),
+        notes=(*table.notes, f"time from the angle in column {name!r} at {rpm:g} rpm"),
+    )
+
+
 def _counted(
     path: Path, table: Table, rate_hz: float | None
 ) -> tuple[FloatArray, float, np.ndarray[tuple[int], np.dtype[np.bool_]], list[str]]:
     """Times counted by the rate."""
     rate = rate_hz or table.rate_hz
+    if rate is None and (angle := angle_column(table)) is not None:
+        raise MeasuredError(
+            f"{path}: no column of time, but one of an angle, {table.names[angle]!r}; give the spindle speed by --rpm "
+            "to make time of it, or the sampling rate by --rate HZ"
+        )
     if rate is None:
         raise MeasuredError(
             f"{path}: no column of time among {', '.join(table.names)}; give the sampling rate by --rate HZ, "

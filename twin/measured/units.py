@@ -31,6 +31,7 @@ _UNITS: dict[str, tuple[Quantity, float]] = {
     **dict.fromkeys(("hz", "s/s", "1/s", "samples/s"), ("rate", 1.0)),
     "khz": ("rate", 1e3),
     "rpm": ("other", 1.0),
+    **dict.fromkeys(("digit", "digits", "counts", "cts", "bit", "bits", "lsb", "adu"), ("other", 1.0)),
     **dict.fromkeys(
         ("g", "m/s2", "m/s^2", "m/s²", "mm", "um", "m", "w", "kw", "a", "c", "°c", "%", "bar"), ("other", 1.0)
     ),
@@ -48,7 +49,10 @@ TIME_NAME = re.compile(
     r"(?:.*[\s_.-])?(?:times?|zeit|temps|tiempo|timestamp|seconds|elapsed)(?:[\s_.-].*)?)$",
     re.IGNORECASE,
 )
+#: Names of a column of the spindle's angle.
+ANGLE_NAME = re.compile(r"angle|\bphi\b|theta|winkel|encoder|rotat|spindle[\s_]*pos", re.IGNORECASE)
 _BRACKETS = re.compile(r"^(?P<base>.*?)\s*[\[({<]\s*(?P<unit>[^\[\](){}<>]*?)\s*[\])}>]\s*:?$")
+_WORDS = re.compile(r"^[A-Za-z]*\d*(?:[ _-][A-Za-z0-9]+)*$")
 _SLASH = re.compile(r"^(?P<base>.+?)\s*(?:/|,|\bin\b)\s*(?P<unit>\S+)$")
 _TAIL = re.compile(r"^(?P<base>.+?)[_ ](?P<unit>[^_ ]+)$")
 
@@ -63,12 +67,13 @@ def split_unit(header: str) -> tuple[str, str]:
     """A header as name and unit: ``("Fx", "N")`` from ``Fx [N]``, ``Fx_N``, ``Fx (N)``, ``Fx / N``, ``Fx N``.
 
     Returns:
-        the unit is ``""`` when the header holds none. Brackets with anything in them count as a unit, so that an
-        unknown one can be refused by name.
+        the unit is ``""`` when the header holds none. Brackets with signs in them (``mV/V``) count as a unit, so
+        that an unknown one can be refused by name; with words in them (``filtered``) they belong to the name.
     """
     text = header.strip().strip("\"'").strip()
     if (found := _BRACKETS.match(text)) and found["base"]:
-        return found["base"], found["unit"]
+        inside = found["unit"]
+        return (text, "") if find_unit(inside) is None and _WORDS.match(inside) else (found["base"], inside)
     for pattern in (_SLASH, _TAIL):
         found = pattern.match(text)
         if found and _plausible(found["base"], found["unit"]):

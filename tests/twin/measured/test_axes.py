@@ -50,6 +50,13 @@ def test_text_of_a_map() -> None:
         (["Force Z", "Force X", "Force Y"], "x=Force X,y=Force Y,z=Force Z"),
         (["dyno.Fx", "dyno.Fy", "dyno.Fz"], "x=dyno.Fx,y=dyno.Fy,z=dyno.Fz"),
         (["Fx_raw", "Fx_filtered", "Fy", "Fz"], None),
+        (["Fx_exp", "Fx_sim", "Fy_exp", "Fy_sim", "Fz_exp", "Fz_sim"], "x=Fx_exp,y=Fy_exp,z=Fz_exp"),
+        (["Fx (filtered)", "Fy (filtered)", "Fz (filtered)"], "x=Fx (filtered),y=Fy (filtered),z=Fz (filtered)"),
+        (
+            ["Cutting Force X-axis [N]", "Y axis force", "force_z_n"],
+            "x=Cutting Force X-axis [N],y=Y axis force,z=force_z_n",
+        ),
+        (["FX1", "FY1", "FZ1"], "x=FX1,y=FY1,z=FZ1"),
         (["a", "b", "c"], None),
         (["Fx", "Fy"], None),
     ],

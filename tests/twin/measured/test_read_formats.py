@@ -12,6 +12,9 @@ from support.slot_run import SlotRun
 
 from twin.errors import MeasuredError
 from twin.measured import AxisMap, force_log, read_log
+from twin.measured.spindle import spindle_speed
+from twin.measured.steady import steady_window
+from twin.measured.zero import in_windows
 from twin.sinks.mcap_sink import McapSink
 from twin.sinks.memory import MemorySink
 
@@ -130,3 +133,7 @@ def test_genuine_dynoware_exports_have_the_published_means(feed: int) -> None:
     assert (raw.rate_hz, len(raw.t_s)) == (10000.0, 10001)
     assert log.channels == ("Fx", "Fy", "Fz")
     np.testing.assert_allclose(log.force_n.mean(axis=0), PUBLISHED[feed], atol=0.06)
+    steady = in_windows(log.t_s, [steady_window(log, 6000.0)])
+    np.testing.assert_allclose(log.force_n[steady].mean(axis=0), PUBLISHED[feed], atol=0.06)
+    speed = spindle_speed(log, 2, 6000.0)
+    assert speed is not None and abs(speed.rpm - 6000.0) < 1.0

@@ -63,6 +63,13 @@ def test_styles_of_headers(header: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    "header", ["Time (s)  Fx (N)  Fy (N)  Fz (N)", "Time (s) Fx (N) Fy (N) Fz (N)", "t [s] Fx Fy Fz"]
+)
+def test_headers_with_blanks_above_columns_set_apart_by_blanks(header: str, tmp_path: Path) -> None:
+    np.testing.assert_allclose(read(tmp_path, f"{header}\n{body('  ')}").force_n, WANT)
+
+
+@pytest.mark.parametrize(
     ("header", "force", "time"),
     [
         ("t [ms],Fx [kN],Fy [kN],Fz [kN]", 1000.0, 1e-3),
