@@ -18,13 +18,8 @@ def twin(*arguments: object) -> str:
     """Run a command of twin as a user would, and show it."""
     words = [str(a) for a in arguments]
     print("\n$ twin " + " ".join(words), flush=True)
-    done = subprocess.run(
-        [sys.executable, "-c", "from twin.cli import main; main()", *words],
-        check=True,
-        text=True,
-        stdout=subprocess.PIPE,
-    )
-    return done.stdout
+    command = [sys.executable, "-c", "from twin.cli import main; main()", *words]
+    return subprocess.run(command, check=True, text=True, stdout=subprocess.PIPE).stdout
 
 
 def write_job() -> Path:
@@ -32,10 +27,9 @@ def write_job() -> Path:
     found = json.loads((RESULTS / "identified.json").read_text())["runout"]
     runout = f"runout_mm = {found['runout_mm']:.6f}\nrunout_angle_deg = {found['runout_angle_deg']:.2f}\n"
     head, output = (HERE / "validation.toml").read_text().split("[output]")
+    cutting = (RESULTS / "coefficients.toml").read_text()
     job = RESULTS / "job.toml"
-    job.write_text(
-        head.rstrip() + "\n" + runout + "\n[output]" + output + "\n" + (RESULTS / "coefficients.toml").read_text()
-    )
+    job.write_text(f"{head.rstrip()}\n{runout}\n[output]{output}\n{cutting}")
     return job
 
 
@@ -51,9 +45,8 @@ def main() -> None:
     axes = ["--map", "x=-Fy,y=Fx,z=Fz", "--force-on", "workpiece"]
     corrections = ["--offset", "air", "--drift", "--phase"]
     log = HERE / "logs" / "synthetic_validation.csv"
-    print(
-        twin("compare", RESULTS / "validation.mcap", log, *windows, *axes, *corrections, "--report", RESULTS / "report")
-    )
+    report = ["--report", RESULTS / "report"]
+    print(twin("compare", RESULTS / "validation.mcap", log, *windows, *axes, *corrections, *report))
 
 
 if __name__ == "__main__":
