@@ -33,11 +33,11 @@ def print_comparison(console: Console, found: Comparison) -> None:
     console.print()
 
 
-def window_name(window: WindowResult) -> str:
-    """``4.00–4.02 s``, or that it is the whole overlap."""
+def window_name(window: WindowResult, *, short: bool = False) -> str:
+    """``4.00–4.02 s``, and that it is the whole overlap."""
     begin, end = window.span_s
     decimals = 3 if end - begin < 1.0 and (round(1e3 * begin) % 10 or round(1e3 * end) % 10) else 2
-    return f"{begin:.{decimals}f}–{end:.{decimals}f} s" + (" (whole)" if window.whole else "")
+    return f"{begin:.{decimals}f}–{end:.{decimals}f} s" + (" (whole)" if window.whole and not short else "")
 
 
 def print_batch(console: Console, rows: Sequence[Row]) -> None:
@@ -110,7 +110,7 @@ def _details(found: Comparison) -> Table:
                 column((e.measured_peak_n, e.simulated_peak_n)),
             )
             made.add_row(
-                window_name(window) if not index else "",
+                window_name(window, short=True) if not index else "",
                 f"F{e.axis}" if e.axis in "xyz" else "F",
                 digits(e.rms_n),
                 digits(e.bias_n),
@@ -135,7 +135,7 @@ def _harmonics(found: Comparison) -> Table:
             found_lines = [e for e in window.lines if e.order == order]
             tooth = found_lines[0].tooth_order
             cells = [digits(v) for e in found_lines for v in (e.measured_n, e.simulated_n)]
-            name = window_name(window) if not index else ""
+            name = window_name(window, short=True) if not index else ""
             made.add_row(name, f"{found_lines[0].hz:.1f}", f"{tooth}x" if tooth else "runout", *cells)
     return made
 

@@ -134,6 +134,12 @@ def test_report_is_one_file_with_pictures_in_it(
     assert "Report" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("axes", ["x=Fx,y=Fy", "z=Fz"])
+def test_report_of_some_axes(axes: str, archive: Path, measured: Path, tmp_path: Path) -> None:
+    assert run(["compare", str(archive), str(measured), "--map", axes, *WINDOWS, "--report", str(tmp_path)]) == 0
+    assert ("Fz</th>" in (tmp_path / "report.html").read_text()) == ("z" in axes)
+
+
 def test_report_of_the_whole_overlap(archive: Path, measured: Path, tmp_path: Path) -> None:
     assert run(["compare", str(archive), str(measured), "--report", str(tmp_path / "r")]) == 0
     assert "(whole overlap)" in (tmp_path / "r" / "report.html").read_text()
@@ -150,6 +156,9 @@ def test_the_comparisons_file_can_be_read_again(archive: Path, measured: Path, t
     assert len(forces.t_s) == pytest.approx(len(log.t_s) - 61, abs=2)
     np.testing.assert_allclose(forces.simulated_n - forces.measured_n + [1.0, -2.0, 3.0], 0.0, atol=0.05)
     assert run(["info", str(out)]) == 1
+    rrd = tmp_path / "c.rrd"
+    assert run(["view", str(out), "--rrd", str(rrd)]) == 0 and rrd.stat().st_size > 100_000
+    assert run(["view", str(out), "--rrd", str(rrd)]) == 1
 
 
 def test_recording_for_the_viewer(archive: Path, measured: Path, tmp_path: Path) -> None:
