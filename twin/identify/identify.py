@@ -94,7 +94,7 @@ def _straight_cut(cuts: Cuts, cut: Cut) -> Prepared:
     held_out = cut.name in cuts.held_out
     if cut.log is None:
         return Prepared(cut, held_out, model, given_mean(cut, cut.spindle_rpm))
-    log = log_of(cut)
+    log = log_of(cut, cut.spindle_rpm)
     found = find_cut(log.t_s, log.force_n, 60.0 / cut.spindle_rpm)
     window = straight_window(cut, log, found, reach_mm(model.cut), cut.spindle_rpm, cut.feed_mm_min / 60.0)
     measured = measure(cut, log, found, window, cut.spindle_rpm, tool.teeth, cuts.fit)
@@ -107,7 +107,7 @@ def _job_cut(cuts: Cuts, cut: Cut) -> Prepared:
     held_out = cut.name in cuts.held_out
     if cut.log is None:
         return Prepared(cut, held_out, run.model(cut.run_window_s or run.cut_s), given_mean(cut, run.rpm))
-    log = log_of(cut)
+    log = log_of(cut, run.rpm)
     found = find_cut(log.t_s, log.force_n, 60.0 / run.rpm)
     lag_s, why = _lag(cut, run, log)
     run_window = cut.run_window_s
@@ -229,5 +229,5 @@ def _told(
         evaluations=evaluations,
         at_bounds=at_bounds,
         source=cuts.fit.source,
-        warnings=tuple(doubts(cuts, estimate, results, at_bounds, runout=runout is not None)),
+        warnings=tuple(doubts(cuts, estimate, results, at_bounds, runout=runout is not None, r_squared=r_squared[0])),
     )
