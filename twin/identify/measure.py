@@ -161,7 +161,7 @@ def measure(
     measured = np.array([axis in log.axes for axis in AXES])
     count = harmonic_count(fit, teeth, rpm, samples)
     harmonics = noise = None
-    if count >= 1 and inside.sum() > 4 * count:
+    if count >= 1 and inside.sum() >= 3 * count:
         turns = (t >= used[0]) & (t <= used[1])
         harmonics, noise = of_samples(t[turns], f[turns], rpm * 2.0 * math.pi / 60.0, count)
     notes += [zero.note, f"steady cut from {used[0]:.3f} to {used[1]:.3f} s, {'as given' if cut.window_s else 'found'}"]
