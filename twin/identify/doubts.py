@@ -24,7 +24,7 @@ _PLAUSIBLE_N = (0.01, 100_000.0)
 #: Waveforms repeat with each tooth but for this part of their size, or the teeth do not cut alike.
 _ALIKE = 0.15
 #: Forces that follow the model have an R2 above.
-_FITS = 0.9
+LEAST_FIT = 0.9
 #: Samples in one tooth passing below which means may be off.
 _LEAST_SAMPLES = 2.0
 
@@ -50,9 +50,9 @@ def doubts(
     yield from _implausible(estimate, results)
     yield from _logs(cuts, results)
     yield from _runout(cuts, results, runout)
-    if r_squared < _FITS:
+    if r_squared < LEAST_FIT:
         yield (
-            f"R2 = {r_squared:.3f}, expected above {_FITS:g}: forces do not follow the model; check map, force_on, "
+            f"R2 = {r_squared:.3f}, expected above {LEAST_FIT:g}: forces do not follow the model; check map, force_on, "
             "direction, depths, teeth and helix; a resonance of the dynamometer is left out by fit.lowpass_hz"
         )
     if at_bounds:

@@ -11,8 +11,9 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.compare.align import find_delay
 from twin.errors import IdentifyError
+from twin.identify.axes_hint import other_axes
 from twin.identify.cuts_file import Cut, Cuts, Method
-from twin.identify.doubts import doubts
+from twin.identify.doubts import LEAST_FIT, doubts
 from twin.identify.estimate import Estimate, fixed_values
 from twin.identify.job_model import JobRun, replay_units
 from twin.identify.means import START, equations, fit_means, search_means
@@ -84,7 +85,7 @@ def identify_prepared(
     k = estimate.values
     results = tuple(_result(p, k) for p in prepared)
     r_squared = _r_squared(given.values, given.design @ k, given.axis)
-    return _told(cuts, method, estimate, r_squared, results, None, evaluations, at_bounds)
+    return _told(cuts, method, estimate, r_squared, prepared, results, None, evaluations, at_bounds)
 
 
 def _straight_cut(cuts: Cuts, cut: Cut) -> Prepared:
@@ -165,7 +166,7 @@ def _by_waveforms(cuts: Cuts, prepared: list[Prepared], fitted: list[Prepared]) 
         [np.repeat(np.flatnonzero(m.axes), 2 * len(measured_harmonics(m)) - 1) for m in together.measured]
     )
     r_squared = _r_squared(values, together.design(found.phases, runout_mm) @ k, axis.astype(np.float64))
-    return _told(cuts, "waveform", found.estimate, r_squared, results, found.runout, found.evaluations, ())
+    return _told(cuts, "waveform", found.estimate, r_squared, prepared, results, found.runout, found.evaluations, ())
 
 
 def _sector(cuts: Cuts) -> float:
@@ -214,11 +215,17 @@ def _told(
     method: Method,
     estimate: Estimate,
     r_squared: tuple[float, float, float, float],
+    prepared: list[Prepared],
     results: tuple[CutResult, ...],
     runout: Runout | None,
     evaluations: int,
     at_bounds: tuple[str, ...],
 ) -> Identified:
+    warnings = [*doubts(cuts, estimate, results, at_bounds, runout=runout is not None, r_squared=r_squared[0])]
+    if r_squared[0] < LEAST_FIT or estimate.values[0] < 0.0:
+        fitted = [p for p in prepared if not p.held_out]
+        axes = other_axes([p.model for p in fitted], [p.measured for p in fitted])
+        warnings += [f"mean forces would follow the model with {axes} of what the map gives"] if axes else []
     return Identified(
         file=cuts.path,
         method=method,
@@ -229,5 +236,5 @@ def _told(
         evaluations=evaluations,
         at_bounds=at_bounds,
         source=cuts.fit.source,
-        warnings=tuple(doubts(cuts, estimate, results, at_bounds, runout=runout is not None, r_squared=r_squared[0])),
+        warnings=tuple(warnings),
     )

@@ -110,8 +110,9 @@ def test_undetermined_coefficients_are_warned_of_and_not_written(
     said = capsys.readouterr()
     assert "not determined" in said.out
     assert "all have one feed per tooth, and c and e need two" in said.err.replace("\n", " ")
-    found = as_json(capsys, path)
+    found = as_json(capsys, path, "--plot", tmp_path / "plot.png")
     assert found["coefficients"]["Ktc"] is None
+    (tmp_path / "plot.png").unlink()
     capsys.readouterr()
     assert run(["identify", str(path), "-o", str(tmp_path / "steel.toml")]) == 1
     assert "no coefficient set written: Ktc, Kte" in capsys.readouterr().err

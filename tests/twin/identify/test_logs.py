@@ -12,9 +12,11 @@ from support.cut_logs import QUARTER_TURN, write_log
 from support.edge_integral import SOME, Pass, log_rows
 
 from twin.errors import IdentifyError, MeasuredError
+from twin.identify.cuts_file import Fit
 from twin.identify.harmonics import find_speed, of_samples, of_waveform, to_waveform
 from twin.identify.identify import Prepared, identify, prepare
 from twin.identify.load import cuts_from_dict
+from twin.identify.measure import harmonic_count
 from twin.identify.steady import find_cut, steady_part
 
 SIDE = Pass(
@@ -160,6 +162,20 @@ def test_find_cut_tells_air_from_cut_by_the_variation_alone() -> None:
     assert all(b <= 0.4 or a >= 1.2 for a, b in found.air_s)
     assert steady_part(found, 4.0, 20.0, 1.0 / 60.0) is not None
     assert steady_part(found, 40.0, 20.0, 1.0 / 60.0) is None
+
+
+@pytest.mark.parametrize(
+    ("keys", "samples", "count"),
+    [
+        ({}, 1000.0, 24),
+        ({}, 30.0, 12),
+        ({"harmonics": 8}, 1000.0, 8),
+        ({"lowpass_hz": 600.0}, 1000.0, 10),
+        ({}, 2.0, 0),
+    ],
+)
+def test_how_many_harmonics_are_compared(keys: dict[str, Any], samples: float, count: int) -> None:
+    assert harmonic_count(Fit(**keys), 2, 3600.0, samples) == count
 
 
 def test_speed_is_found_to_a_hundredth_of_a_revolution() -> None:
