@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,14 +23,22 @@ TOOL = made_run()
 WINDOWS = ["--window", "3.00:3.02", "--window", "5.00:5.02"]
 
 
-@pytest.fixture
-def archive(tmp_path: Path) -> Path:
-    return write_run(tmp_path / "run.mcap")
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("made")
+    write_run(folder / "run.mcap")
+    write_log(folder / "ap1.csv", log_of(TOOL, lag_s=0.0123, add_n=(1.0, -2.0, 3.0)))
+    return folder
 
 
 @pytest.fixture
-def measured(tmp_path: Path) -> Path:
-    return write_log(tmp_path / "ap1.csv", log_of(TOOL, lag_s=0.0123, add_n=(1.0, -2.0, 3.0)))
+def archive(made: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copy(made / "run.mcap", tmp_path))
+
+
+@pytest.fixture
+def measured(made: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copy(made / "ap1.csv", tmp_path))
 
 
 def write_run(path: Path, **parameters: str) -> Path:
@@ -104,6 +113,12 @@ def test_the_jobs_measured_table_is_used(tmp_path: Path, capsys: pytest.CaptureF
     assert found["lag_s"] == 0.2 and found["windows"][0]["errors"]["x"]["max_n"] < 1e-3
     plain = write_run(tmp_path / "plain.mcap")
     assert "no log given, and its job has no measured.file" in failed(capsys, plain)
+
+
+def test_a_run_against_a_run(archive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = compared(capsys, archive, shutil.copy(archive, tmp_path / "other.mcap"))
+    assert found["lag_s"] == pytest.approx(0.0, abs=1e-6) and found["correlation"] > 0.9999
+    assert found["measured_rpm"] == pytest.approx(3600.0) and found["warnings"] == []
 
 
 def test_an_angle_becomes_time_by_the_speed(archive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
