@@ -23,8 +23,8 @@ def prism_corners(profile: Profile, low_y: float, high_y: float) -> FloatArray:
     front = np.column_stack((points[:, 0], np.full(len(points), low_y), points[:, 1]))
     back = front + np.array([0.0, high_y - low_y, 0.0])
     after = np.roll(np.arange(len(points)), -1)
-    one = np.stack((front, front[after], back[after]), axis=1)
-    two = np.stack((front, back[after], back), axis=1)
+    one = np.stack((front, back[after], front[after]), axis=1)
+    two = np.stack((front, back, back[after]), axis=1)
     cap = front[caps]
     turned = np.cross(cap[:, 1] - cap[:, 0], cap[:, 2] - cap[:, 0])[:, 1] > 0.0
     cap[turned] = cap[turned][:, ::-1]

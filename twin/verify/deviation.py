@@ -156,7 +156,7 @@ def deviation(
     tree = ClosestPoints(design.vertices_mm, design.triangles, design.edges)
     found = [_one_direction(rays, tree, store, limits, threads) for rays in cast(store, design)]
     points, away, area, wanted, over = (np.concatenate([f[i] for f in found]) for i in range(5))
-    volumes = np.mean([f[5] for f in found], axis=0)
+    volumes = np.sum([f[5] for f in found], axis=0)
     pitch = float(store.pitch_mm.max())
     return Deviation(
         points_mm=points,
@@ -187,14 +187,30 @@ def _one_direction(
     normals = np.where(far[:, None], apart / np.where(far, near.distance_mm, 1.0)[:, None], near.normals)
     area = np.abs(normals[:, rays.axis]) * rays.area_mm2
     touched = ~(_flush(points, store) & (np.abs(near.distance_mm) <= 2.0 * _ROUNDING_MM))
-    wanted, _, _ = rays.points(rays.design)
-    inside = limits.hold(wanted)
-    facing = np.zeros(len(wanted))
-    facing[inside] = np.abs(tree.ask(wanted[inside], threads).normals[:, rays.axis])
+    wanted, over, facing, volumes = _design_side(rays, tree, limits, threads)
     seen = facing >= _FACING
-    over = (beyond(rays) * facing)[seen] if len(wanted) else np.empty(0)
-    volumes = rays.volumes_mm3(limits.low_mm, limits.high_mm)
-    return points[touched], near.distance_mm[touched], area[touched], wanted[seen], over, volumes
+    return points[touched], near.distance_mm[touched], area[touched], wanted[seen], (over * facing)[seen], volumes
+
+
+def _design_side(
+    rays: Rays, tree: ClosestPoints, limits: Limits, threads: int | None
+) -> tuple[FloatArray, FloatArray, FloatArray, tuple[float, float]]:
+    """Points of the design, what stands over them along the rays, their normals' parts along these, and volumes.
+
+    A volume is the sum over the three directions of lengths on rays, each weighted by the square of the design's normal
+    along its ray: these squares add up to one, so that every part of the surface counts once, and most by the rays that
+    meet it squarely.
+    """
+    wanted, _, out = rays.points(rays.design)
+    over, through = beyond(rays) if len(wanted) else (np.empty(0), np.empty(0, dtype=bool))
+    inside = limits.hold(wanted)
+    wanted, over, out, through = wanted[inside], over[inside], out[inside], through[inside]
+    facing = np.abs(tree.ask(wanted, threads).normals[:, rays.axis])
+    end = np.where(out > 0.0, limits.high_mm[rays.axis], limits.low_mm[rays.axis])
+    standing = np.clip(over, 0.0, np.abs(end - wanted[:, rays.axis]))
+    gone = np.maximum(-over, 0.0) * np.where(through, 0.5, 1.0)
+    weight = facing**2 * rays.area_mm2
+    return wanted, over, facing, (float((gone * weight).sum()), float((standing * weight).sum()))
 
 
 def _flush(points: FloatArray, store: TriSlices) -> NDArray[np.bool_]:

@@ -52,21 +52,6 @@ class Rays:
         out = np.where((np.arange(len(rays)) - ends.offsets[rays]) % 2 == 0, -1.0, 1.0)
         return points, rays, out
 
-    def volumes_mm3(self, low_mm: FloatArray, high_mm: FloatArray) -> tuple[float, float]:
-        """Volume of the design that is gone, and of what stands outside of the design, inside a box."""
-        a, b = self.machined, self.design
-        rays = np.concatenate([np.repeat(np.arange(len(self.places_mm)), np.diff(e.offsets)) for e in (a, b)])
-        at = np.clip(np.concatenate((a.ends_mm, b.ends_mm)), low_mm[self.axis], high_mm[self.axis])
-        of_machined = np.arange(len(at)) < len(a.ends_mm)
-        order = np.lexsort((at, rays))
-        rays, at, of_machined = rays[order], at[order], of_machined[order]
-        left, wanted = np.cumsum(of_machined) % 2 == 1, np.cumsum(~of_machined) % 2 == 1
-        places = self.places_mm[rays]
-        within = np.all((places > low_mm[list(self.across)]) & (places < high_mm[list(self.across)]), axis=1)
-        length = np.where(within, np.diff(at, append=at[-1:]), 0.0)
-        gone, over = length[wanted & ~left].sum(), length[left & ~wanted].sum()
-        return float(gone) * self.area_mm2, float(over) * self.area_mm2
-
 
 def cast(store: TriSlices, design: Solid) -> Iterator[Rays]:
     """Rays along x, y and z, at the planes of the other two families."""
@@ -89,12 +74,13 @@ def cast(store: TriSlices, design: Solid) -> Iterator[Rays]:
         )
 
 
-def beyond(rays: Rays) -> FloatArray:
+def beyond(rays: Rays) -> tuple[FloatArray, NDArray[np.bool_]]:
     """How far the machined part reaches over each end of the design, along its ray.
 
     Returns:
         shape (n,), positive where material stands over the design, negative where the design is gone, at most through
         to the end of the design's material behind it.
+        Shape (n,), whether it is gone all the way through.
     """
     _, lines, out = rays.points(rays.design)
     ends, wanted = rays.machined.ends_mm, rays.design.ends_mm
@@ -112,4 +98,4 @@ def beyond(rays: Rays) -> FloatArray:
     index = np.where(inside == (out > 0.0), found, found - 1)
     ok = (index >= rays.machined.offsets[lines]) & (index < rays.machined.offsets[lines + 1])
     distance = np.where(ok, np.abs(ends[np.clip(index, 0, max(len(ends) - 1, 0))] - wanted), np.inf)
-    return np.where(inside, distance, -np.minimum(distance, through))
+    return np.where(inside, distance, -np.minimum(distance, through)), ~inside & (distance >= through)

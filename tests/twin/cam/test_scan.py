@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -24,7 +26,7 @@ def test_rows_are_evenly_spread_and_reach_both_ends() -> None:
 @pytest.mark.parametrize("climb", [True, False])
 def test_climb_has_the_uncut_material_on_its_right(direction: str, climb: bool) -> None:
     passes = scan_passes(rows(direction), ScanOptions(climb=climb))
-    for one, after in zip(passes, passes[1:], strict=False):
+    for one, after in pairwise(passes):
         feed = one.points_mm[-1] - one.points_mm[0]
         to_next = after.points_mm.mean(axis=0) - one.points_mm.mean(axis=0)
         left = feed[0] * to_next[1] - feed[1] * to_next[0]

@@ -94,7 +94,7 @@ def test_two_tools_are_changed_and_grbl_refuses_them(tmp_path: Path) -> None:
     both = [Operation(path=path, spindle_rpm=3600.0), Operation(path=path, number=2, spindle_rpm=5000.0)]
     write_nc(tmp_path / "a.nc", both, NcOptions())
     text = (tmp_path / "a.nc").read_text()
-    assert "T2 M6\nS5000 M3\nM8\nG43 H2 G0" in text
+    assert "T2 M6\nS5000 M3\nM8\nG43 H2 X-11.8186 Y2.8323 Z12.\n" in text
     with pytest.raises(ToolPathError, match=r"grbl has no tool change: tools \[1, 2\]; expected one tool"):
         write_nc(tmp_path / "b.nc", both, NcOptions(dialect="grbl"))
     assert not (tmp_path / "b.nc").exists()
