@@ -74,13 +74,12 @@ def cast(store: TriSlices, design: Solid) -> Iterator[Rays]:
         )
 
 
-def beyond(rays: Rays) -> tuple[FloatArray, NDArray[np.bool_]]:
+def beyond(rays: Rays) -> FloatArray:
     """How far the machined part reaches over each end of the design, along its ray.
 
     Returns:
         shape (n,), positive where material stands over the design, negative where the design is gone, at most through
         to the end of the design's material behind it.
-        Shape (n,), whether it is gone all the way through.
     """
     _, lines, out = rays.points(rays.design)
     ends, wanted = rays.machined.ends_mm, rays.design.ends_mm
@@ -98,4 +97,4 @@ def beyond(rays: Rays) -> tuple[FloatArray, NDArray[np.bool_]]:
     index = np.where(inside == (out > 0.0), found, found - 1)
     ok = (index >= rays.machined.offsets[lines]) & (index < rays.machined.offsets[lines + 1])
     distance = np.where(ok, np.abs(ends[np.clip(index, 0, max(len(ends) - 1, 0))] - wanted), np.inf)
-    return np.where(inside, distance, -np.minimum(distance, through)), ~inside & (distance >= through)
+    return np.where(inside, distance, -np.minimum(distance, through))

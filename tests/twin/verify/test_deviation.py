@@ -68,7 +68,7 @@ def test_a_rib_that_is_gone_is_a_gouge_as_high_as_the_rib() -> None:
     # the surface that is there lies within half the rib's width of the design
     assert -found.deviation_mm.min(initial=0.0) <= 0.1 + ROUNDING
     assert found.lost_mm == pytest.approx(3.0, abs=0.1) and found.worst_gouge_mm == found.lost_mm
-    assert found.gouged_mm3 == pytest.approx(0.2 * 3.0 * 6.0, rel=0.02) and not found.gouge_ok
+    assert not found.gouge_ok
 
 
 def test_only_the_region_is_judged() -> None:
@@ -99,11 +99,10 @@ def test_rays_tell_what_is_missing_and_what_stands_over() -> None:
     store = CellSlices(mesh_slices(step(2.5), 0.5))
     _, _, up = cast(store, step(3.0))
     points, _, out = up.points(up.design)
-    over, through = beyond(up)
+    over = beyond(up)
     top = (out > 0.0) & (points[:, 2] == 3.0)
     assert top.any() and over[top] == pytest.approx(-0.5)
     assert over[~top] == pytest.approx(0.0)
-    assert not through.any()
 
 
 @pytest.mark.parametrize("values", [{"tolerance_mm": 0.0}, {"excess_mm": -1.0}])
