@@ -12,6 +12,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from gcode.dialects import dialect_named
 from gcode.errors import Place
 from gcode.events import (
@@ -154,26 +156,45 @@ def kind_of(tool: ToolShape) -> Literal["flat", "ball", "bull", "taper"]:
 
 def nc_events(operations: Iterable[Operation], options: NcOptions) -> Iterator[Event]:
     """The events of a program: tool, spindle, coolant, motions with a length offset, end."""
+    tool, at, spindle, coolant = 0, None, 0.0, "off"
     last: Operation | None = None
-    spindle, coolant = 0.0, "off"
     for operation in operations:
-        changed = last is None or operation.number != last.number
-        if changed:
-            if coolant != "off":
+        state = _state(operation, options)
+        if operation.number != tool:
+            if last is not None and at is not None:
+                yield from _above_longer(last, at, operation, _state(last, options))
+                at = _tip_after_change(last, at, operation)
+            if tool and coolant != "off":
                 yield CoolantChange(place=_NOWHERE, mist=False, flood=False)
             yield ToolChange(place=_NOWHERE, tool=operation.number)
-            spindle, coolant = 0.0, "off"
+            tool, spindle, coolant = operation.number, 0.0, "off"
         if operation.spindle_rpm != spindle:
             spindle = operation.spindle_rpm
             yield SpindleChange(place=_NOWHERE, spindle_rpm=spindle, spindle_direction=1)
         if operation.coolant != coolant:
             coolant = operation.coolant
             yield CoolantChange(place=_NOWHERE, mist=coolant == "mist", flood=coolant == "flood")
-        yield from _motions(operation, _state(operation, options), last, direct=changed)
-        last = operation
+        yield from _motions(operation, state, at)
+        at, last = operation.path.moves[-1].end_mm, operation
     yield CoolantChange(place=_NOWHERE, mist=False, flood=False)
     yield SpindleChange(place=_NOWHERE, spindle_rpm=spindle, spindle_direction=0)
     yield ProgramStop(place=_NOWHERE, optional=False, end=True)
+
+
+def _above_longer(last: Operation, at: FloatArray, following: Operation, state: MotionState) -> Iterator[LinearMotion]:
+    """Up by as much as the following tool is longer, so that its tip is no lower than this one's."""
+    longer = following.length_mm - last.length_mm
+    if longer > 0.0:
+        above = (float(at[0]), float(at[1]), float(at[2]) + longer)
+        yield LinearMotion(
+            place=_NOWHERE, state=state, start_mm=_point(at), end_mm=above, rapid=True, feed_mm_min=0.0
+        )
+
+
+def _tip_after_change(last: Operation, at: FloatArray, following: Operation) -> FloatArray:
+    """Where the tip of the following tool is: the spindle stays where it is."""
+    shorter = max(0.0, last.length_mm - following.length_mm)
+    return np.array([at[0], at[1], at[2] + shorter])
 
 
 def _state(operation: Operation, options: NcOptions) -> MotionState:
@@ -188,29 +209,18 @@ def _state(operation: Operation, options: NcOptions) -> MotionState:
     )
 
 
-def _motions(
-    operation: Operation, state: MotionState, last: Operation | None, *, direct: bool
-) -> Iterator[LinearMotion | ArcMotion]:
-    """An operation's motions, after a rapid to its first point.
-
-    Args:
-        last: the operation before.
-        direct: the machine comes from its tool change, so one motion names all axes; else up first, then across.
-    """
-    first = _point(operation.path.moves[0].start_mm)
-    begin = first
-    if last is not None:
-        x, y, z = _point(last.path.moves[-1].end_mm)
-        begin = (x, y, z + last.length_mm - operation.length_mm)
-    ends = (
-        [first]
-        if direct
-        else [(begin[0], begin[1], max(begin[2], first[2])), (*first[:2], max(begin[2], first[2])), first]
-    )
-    for end in ends:
-        if direct or end != begin:
-            yield LinearMotion(place=_NOWHERE, state=state, start_mm=begin, end_mm=end, rapid=True, feed_mm_min=0.0)
-            begin = end
+def _motions(operation: Operation, state: MotionState, at: FloatArray | None) -> Iterator[LinearMotion | ArcMotion]:
+    """An operation's motions; a rapid to its first point is put in front."""
+    first = operation.path.moves[0].start_mm
+    begin = _point(first if at is None else at)
+    if at is not None and begin != _point(first):
+        over = (float(first[0]), float(first[1]), max(begin[2], float(first[2])))
+        for end in (over, _point(first)):
+            if end != begin:
+                yield LinearMotion(place=_NOWHERE, state=state, start_mm=begin, end_mm=end, rapid=True, feed_mm_min=0.0)
+                begin = end
+    elif at is None:
+        yield LinearMotion(place=_NOWHERE, state=state, start_mm=begin, end_mm=begin, rapid=True, feed_mm_min=0.0)
     for move in operation.path.moves:
         for event in _move_events(move, state, begin):
             yield event
