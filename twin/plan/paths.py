@@ -40,8 +40,10 @@ _CHORD_PITCHES = 0.005
 _CHORD_MM = 0.0005
 #: Planes that are inflated between two reports.
 _PLANES_TOGETHER = 32
-#: What a contour's default overhang lacks to the tool's radius, so that flush sides of the stock are left alone.
+#: What a contour's overhang lacks to the tool's radius, and a few chords: flush sides of the stock are left alone.
 _SHORT = 1e-3
+#: Levels are asked this much higher, for at the very height of a flat face the tool may stand on it.
+_LIFT_MM = 1e-6
 #: Tips higher than this above the stock are in air, and rows are broken there.
 _AIR_MM = 0.01
 #: Rapids are this much above the stock, unless told otherwise.
@@ -87,8 +89,9 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, report: Repor
     sliced = part if isinstance(part, SlicedPart) else slice_part(part, settings.pitch_mm)
     box = np.array([sliced.slices.low_mm, sliced.slices.high_mm])
     stock = np.reshape(settings.stock_mm, (2, 3)) if settings.stock_mm else box
-    region = np.reshape(settings.region_mm, (2, 2)) if settings.region_mm else box[:, :2]
-    default = 0.0 if settings.strategy == "scan" else tool.max_radius_mm - _SHORT
+    scan = settings.strategy == "scan"
+    region = np.reshape(settings.region_mm, (2, 2)) if settings.region_mm else (box if scan else stock)[:, :2]
+    default = 0.0 if scan else tool.max_radius_mm - _SHORT - 4.0 * _CHORD_PITCHES * settings.pitch_mm
     overhang = default if settings.overhang_mm is None else settings.overhang_mm
     top = float(stock[1, 2])
     safe = top + max(SAFE_ABOVE_MM, settings.clearance_mm) if settings.safe_z_mm is None else settings.safe_z_mm
@@ -183,7 +186,7 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
     top = float(ground.stock_mm[1, 2])
     heights = level_heights(ground.floor_mm + settings.allowance_mm, top, settings.axial_depth_mm)
     element = StructuringElement.tool(ground.tool).with_allowance(settings.allowance_mm)
-    regions = _inflated(settings, ground, element, 2, heights[::-1], report)[::-1]
+    regions = _inflated(settings, ground, element, 2, heights[::-1] + _LIFT_MM, report)[::-1]
     levels = levels_of(heights, regions)
     chord = _CHORD_PITCHES * settings.pitch_mm
     window = grown(box_area(*ground.region_mm), ground.overhang_mm, chord)
