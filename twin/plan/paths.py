@@ -19,7 +19,7 @@ from twin.cam.element import StructuringElement
 from twin.cam.linking import LinkOptions, Pass, Way, link
 from twin.cam.offset import inflated_planes
 from twin.cam.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
-from twin.cam.sections import SlicedPart, slice_part
+from twin.cam.sections import Sections, SlicedPart, slice_part
 from twin.cam.surface import surface_of
 from twin.cam.surface_way import SurfaceWay
 from twin.cam.tip_lines import Places, Profiles, tip_lines
@@ -28,6 +28,7 @@ from twin.cam.toolpath import ToolPath
 from twin.errors import ToolPathError
 from twin.geometry.outline import box_area, grown
 from twin.geometry.region import Region
+from twin.geometry.slicing import mesh_sections
 from twin.plan.settings import PathSettings
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
@@ -186,7 +187,8 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
     top = float(ground.stock_mm[1, 2])
     heights = level_heights(ground.floor_mm + settings.allowance_mm, top, settings.axial_depth_mm)
     element = StructuringElement.tool(ground.tool).with_allowance(settings.allowance_mm)
-    regions = _inflated(settings, ground, element, 2, heights[::-1] + _LIFT_MM, report)[::-1]
+    at = heights[::-1] + _LIFT_MM
+    regions = _inflated(settings, _sections_with(ground.part, at), element, at, report)[::-1]
     levels = levels_of(heights, regions)
     chord = _CHORD_PITCHES * settings.pitch_mm
     window = grown(box_area(*ground.region_mm), ground.overhang_mm, chord)
@@ -203,11 +205,18 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
     return contour_passes(levels, options), LevelWay(levels, window, top)
 
 
+def _sections_with(part: SlicedPart, at: FloatArray) -> Sections:
+    """The part's level sections, and those at the levels themselves: a flat bottom meets nothing lower."""
+    mesh = part.mesh
+    regions = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (2, 0, 1), at)
+    return part.sections(2).joined(Sections(axis=2, positions_mm=at, regions=regions))
+
+
 def _inflated(
-    settings: PathSettings, ground: Ground, element: StructuringElement, axis: int, at: FloatArray, report: Report
+    settings: PathSettings, sections: Sections, element: StructuringElement, at: FloatArray, report: Report
 ) -> Sequence[Region]:
     """Sections of the inflated part on planes, some at a time."""
-    sections, chord = ground.part.sections(axis), _CHORD_PITCHES * settings.pitch_mm
+    chord = _CHORD_PITCHES * settings.pitch_mm
     made: list[Region] = []
     for first in range(0, len(at), _PLANES_TOGETHER):
         report("inflating", first / len(at))

@@ -125,10 +125,12 @@ def test_contours_leave_no_gouge_and_their_levels(tmp_path: Path) -> None:
         floor_z_mm=0.0,
         radial_depth_mm=1.2,
         stock_mm=(-11, -11, -2, 11, 11, 2),
+        thin_mm=0.002,
+        entry="plunge",
     )
     heights = {round(float(m.points_mm[0, 2]), 6) for m in path.of_kind(MoveKind.CUT)}
     assert heights == {0.0, 0.5, 1.0, 1.5}
-    found = replayed(path, ground, part, tmp_path, 0.15, excess_mm=0.6)
+    found = replayed(path, ground, part, tmp_path, 0.2, excess_mm=0.6)
     assert found.worst_gouge_mm < 0.005
     # steps of 0.5 mm on a tube of 2 mm radius, and fillets that a flat tool cannot reach
     assert found.worst_excess_mm < 0.5
