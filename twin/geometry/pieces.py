@@ -78,11 +78,16 @@ class Pieces:
         return np.asarray(shapely.get_coordinates(shapely.get_point(circles, 0))), fat.astype(np.int64)
 
     def near_pairs(self, distance_mm: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Pairs of pieces on the same or neighbouring planes that are no farther apart, seen along the normal."""
-        tree = shapely.STRtree(self.shapes)
-        one, other = tree.query(self.shapes, predicate="dwithin", distance=distance_mm)
-        near = np.abs(self.planes[one] - self.planes[other]) <= 1
-        return one[near], other[near]
+        """Pairs of pieces on neighbouring planes that are no farther apart, seen along the normal."""
+        firsts = np.searchsorted(self.planes, np.arange(self.planes[-1] + 2))
+        pairs = [np.empty((2, 0), dtype=np.int64)]
+        for low, middle, high in zip(np.concatenate(([0], firsts[:-2])), firsts[:-1], firsts[1:], strict=True):
+            if high > middle > low:
+                tree = shapely.STRtree(self.shapes[low:middle])
+                found = tree.query(self.shapes[middle:high], predicate="dwithin", distance=distance_mm)
+                pairs.append(found + np.array([[middle], [low]]))
+        one, other = np.concatenate(pairs, axis=1)
+        return one, other
 
 
 def prism_parts(shape: Shape) -> tuple[FloatArray, FloatArray]:

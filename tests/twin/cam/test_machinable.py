@@ -21,7 +21,7 @@ from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import solid
 
 #: Segments about the axis: a polygon's area is less than its circle's by this factor.
-AROUND = 96
+AROUND = 64
 ROUND = math.sin(2.0 * math.pi / AROUND) / (2.0 * math.pi / AROUND)
 
 
@@ -57,7 +57,7 @@ def volume_under_ball(radius: float) -> float:
 
 @pytest.fixture(scope="module")
 def torus_part() -> SlicedPart:
-    return part_of(solids.torus_example().torus(AROUND, 240, profile()), 0.05)
+    return part_of(solids.torus_example().torus(AROUND, 160, profile()), 0.05)
 
 
 def test_a_ball_of_4_mm_leaves_the_closed_forms_ring_in_the_inner_fillet_and_nothing_in_the_outer(
@@ -69,8 +69,8 @@ def test_a_ball_of_4_mm_leaves_the_closed_forms_ring_in_the_inner_fillet_and_not
     assert ring.volume_mm3 == pytest.approx(exact, rel=0.01)
     p = profile()
     foot, own = (p.fillet(r, -1)[0] for r in (4.0, 3.0))
-    # thickest on the line through both balls' centres
-    assert ring.thickness_mm == pytest.approx(math.hypot(own - foot, 1.0) - 1.0, abs=0.006)
+    # thickest on the line through both balls' centres; corners of the polygon about the axis lie 8 um deeper
+    assert ring.thickness_mm == pytest.approx(math.hypot(own - foot, 1.0) - 1.0, abs=0.008)
     # up to where the larger ball touches the tube; its thin ends fade below what slices can tell
     touch = p.ring_mm - (p.ring_mm - foot) * p.tube_mm / (p.tube_mm + 4.0)
     assert ring.high_mm[0] == pytest.approx(touch, abs=0.06)
@@ -119,7 +119,9 @@ def test_a_tool_larger_than_the_pocket_leaves_it_full() -> None:
 
 
 def test_what_lies_below_an_overhang_is_reached_from_a_side_but_not_from_above() -> None:
-    outline = np.array([(-8.0, 0.0), (8.0, 0.0), (8.0, 8.0), (-8.0, 8.0), (-8.0, 6.0), (2.0, 6.0), (2.0, 2.0), (-8.0, 2.0)])
+    outline = np.array(
+        [(-8.0, 0.0), (8.0, 0.0), (8.0, 8.0), (-8.0, 8.0), (-8.0, 6.0), (2.0, 6.0), (2.0, 2.0), (-8.0, 2.0)]
+    )
     part = part_of(solids.extruded(outline), 0.25)
     above = unmachinable(part, tool("ball 2"))
     assert above.volume_mm3 == pytest.approx(10.0 * 4.0 * 12.0, rel=0.01)
@@ -141,7 +143,10 @@ def test_the_direction_of_slices_does_not_matter(axis: int) -> None:
 
 def test_leftovers_as_triangles_are_a_solid_of_the_same_volume() -> None:
     part = part_of(solids.pocket(10.0, 6.0), 0.5)
-    for found, axis in ((unmachinable(part, tool("flat 4")), 2), (unmachinable(part, StructuringElement.ball(2.0), axis=1), 1)):
+    for found, axis in (
+        (unmachinable(part, tool("flat 4")), 2),
+        (unmachinable(part, StructuringElement.ball(2.0), axis=1), 1),
+    ):
         assert found.axis == axis
         mesh = leftover_mesh(found.leftovers, found.pitch_mm)
         made = solid(mesh.vertices_mm[mesh.triangles], "leftovers")
@@ -149,14 +154,14 @@ def test_leftovers_as_triangles_are_a_solid_of_the_same_volume() -> None:
 
 
 def test_the_largest_ball() -> None:
-    part = slice_part(solids.torus(48, 64), 0.2)
+    part = slice_part(solids.torus(32, 48), 0.4)
     tried: list[float] = []
     radius = largest_ball_mm(part, report=lambda r, _: tried.append(r))
     # noise of the slices hides what a slightly larger ball leaves
-    assert radius is not None and 2.95 < radius < 3.9
+    assert radius is not None and 2.9 < radius < 4.5
     assert len(tried) < 12
     assert largest_ball_mm(part_of(solids.pocket(), 0.25)) is None
-    with pytest.raises(ToolError, match="slice pitch 2.* mm; expected below 0.5 for a search"):
+    with pytest.raises(ToolError, match=r"slice pitch 2 mm; expected below 0\.5 for a search"):
         largest_ball_mm(part_of(solids.box((0, 0, 0), (20, 20, 5)), 2.0))
 
 
