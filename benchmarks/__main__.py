@@ -6,7 +6,7 @@ python -m benchmarks
 import subprocess
 import sys
 
-STAGES = ("speed", "surface", "replay", "removal", "archive", "gcode")
+STAGES = ("speed", "surface", "replay", "removal", "archive", "gcode", "offset")
 
 if __name__ == "__main__":
     for stage in STAGES:
