@@ -98,6 +98,8 @@ def contour_passes(levels: Sequence[Level], options: ContourOptions) -> tuple[Pa
 def _level_passes(level: Level, options: ContourOptions, top_mm: float, layer: int) -> Iterator[Pass]:
     free = pieces(minus(options.window, level.area))
     lines: list[list[tuple[int, FloatArray]]] = [[] for _ in free]
+    if not free:
+        return
     for k in range(MOST_LAYERS if options.layers is None else options.layers):
         area = grown(level.area, k * options.radial_depth_mm, options.chord_mm)
         found = outlines(area, options.window)

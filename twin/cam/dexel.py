@@ -77,6 +77,16 @@ class Dexels:
         return np.asarray(self.low_mm[1] + (np.arange(self.heights_mm.shape[1]) + 0.5) * self.pitch_mm[1])
 
     @property
+    def frame_mm(self) -> FloatArray:
+        """Place of the first dexel and pitch, shape (4,), as kernels take them."""
+        return np.array([self.x_mm[0], self.y_mm[0], *self.pitch_mm])
+
+    @property
+    def block_maxima_mm(self) -> FloatArray:
+        """Largest height of each block of dexels."""
+        return self._maxima
+
+    @property
     def points_mm(self) -> FloatArray:
         """Plan places of all dexels in the order of ``heights_mm.ravel()``, shape (nx ny, 2)."""
         x, y = np.meshgrid(self.x_mm, self.y_mm, indexing="ij")
@@ -110,11 +120,10 @@ class Dexels:
             threads: how many work, None for all cores; heights do not depend on it.
         """
         shape = tool.parameters
-        frame = np.array([self.x_mm[0], self.y_mm[0], *self.pitch_mm])
         rows = self._maxima.shape[0]
         bounds = [rows * k // PARTS for k in range(PARTS + 1)]
         bands = [(a, b) for a, b in pairwise(bounds) if b > a]
-        stock = (self.heights_mm, self._maxima, frame, shape)
+        stock = (self.heights_mm, self._maxima, self.frame_mm, shape)
         run_all(
             [partial(kernels.cut_lines, *stock, strokes.starts_mm, strokes.ends_mm, *band) for band in bands], threads
         )

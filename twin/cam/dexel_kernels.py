@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 
@@ -33,6 +34,18 @@ def _profile(tool: FloatArray, rho: float) -> float:
 
 
 @njit(cache=True, nogil=True)
+def _lean(tool: FloatArray, rho: float) -> float:
+    """Slope of the meridian at a distance from the axis, up to the radius."""
+    if rho <= tool[0]:
+        return 0.0
+    if rho < tool[3]:
+        d = rho - tool[0]
+        rest = tool[1] * tool[1] - d * d
+        return d / math.sqrt(rest) if rest > 0.0 else math.inf
+    return 1.0 / tool[2] if tool[2] > 0.0 else math.inf
+
+
+@njit(cache=True, nogil=True)
 def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> float:
     """S in [0, limit] with the largest slope s - h(sqrt(q q + s s)), slope >= 0 and h the convex meridian.
 
@@ -46,30 +59,35 @@ def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> fl
         end = math.sqrt(arc * arc - q * q)
         wall = math.inf if tangent == 0.0 else 1.0 / tangent
         if wall * end / arc >= slope:
-            low = math.asin(min(1.0, max(0.0, (q - disc) / corner)))
-            high = 0.5 * math.pi - math.atan(tangent)
-            kappa = 0.5 * (low + high)
-            for _ in range(60):
-                sine, cosine = math.sin(kappa), math.cos(kappa)
-                rho = disc + corner * sine
-                along = math.sqrt(max(0.0, rho * rho - q * q))
-                value = sine * along - slope * rho * cosine
+            # with t = tan(kappa): t s = slope rho, rho = disc + corner t / sqrt(1 + t t), s = sqrt(rho rho - q q)
+            sine = max(0.0, (q - disc) / corner)
+            low, high = slope, wall
+            if sine > 0.0:
+                low = max(slope, sine / math.sqrt(max(1e-300, 1.0 - sine * sine)))
+            t = low * (1.0 + 1e-3) if sine > 0.0 else low
+            s = 0.0
+            for _ in range(80):
+                root = math.sqrt(1.0 + t * t)
+                rho = disc + corner * t / root
+                s = math.sqrt(max(0.0, rho * rho - q * q))
+                value = t * s - slope * rho
                 if value > 0.0:
-                    high = kappa
+                    high = min(high, t)
                 else:
-                    low = kappa
-                turn = corner * cosine
-                rise = cosine * along + slope * (rho * sine - turn * cosine)
-                if along > 0.0:
-                    rise += sine * rho * turn / along
-                following = kappa - value / rise if rise > 0.0 and along > 0.0 else -1.0
-                if not low < following < high:
-                    following = 0.5 * (low + high)
-                done = abs(following - kappa) < 1e-13
-                kappa = following
+                    low = max(low, t)
+                following = -1.0
+                if s > 0.0:
+                    turn = corner / (root * root * root)
+                    rise = s + t * rho * turn / s - slope * turn
+                    if rise > 0.0:
+                        following = t - value / rise
+                if not low <= following <= high:
+                    following = 0.5 * (low + high) if high < math.inf else 2.0 * low
+                done = abs(following - t) <= 1e-9 * t
+                t = following
                 if done:
                     break
-            rho = disc + corner * math.sin(kappa)
+            rho = disc + corner * t / math.sqrt(1.0 + t * t)
             return min(limit, math.sqrt(max(0.0, rho * rho - q * q)))
         flat = end
     if tangent > 0.0:
@@ -221,8 +239,17 @@ def _round_block(
                 continue
             s = nearest
             if dz != 0.0:
-                s = _resting_place(tool, abs(slope), q, root)
-                s = min(max(-s if slope > 0.0 else s, low), high)
+                # the height along the line is convex: on a short line it most often falls or rises all the way
+                rho = math.sqrt(q * q + low * low)
+                if rho > 0.0 and slope + _lean(tool, rho) * low / rho >= 0.0:
+                    s = low
+                else:
+                    rho = math.sqrt(q * q + high * high)
+                    if rho > 0.0 and slope + _lean(tool, rho) * high / rho <= 0.0:
+                        s = high
+                    else:
+                        s = _resting_place(tool, abs(slope), q, root)
+                        s = min(max(-s if slope > 0.0 else s, low), high)
             z = tip + (foot + s) * slope + _profile(tool, min(radius, math.sqrt(q * q + s * s)))
             if z < old:
                 heights[i, j] = z
@@ -367,3 +394,88 @@ def _from_arc(
     if turn <= abs(sweep):
         return min(ends, abs(math.hypot(x - cx, y - cy) - path))
     return ends
+
+
+@njit(cache=True, nogil=True)
+def rest_heights(
+    heights: FloatArray,
+    maxima: FloatArray,
+    frame: FloatArray,
+    tool: FloatArray,
+    points: FloatArray,
+    first: int,
+    last: int,
+    out: FloatArray,
+) -> None:
+    """Tip height over points ``first`` to ``last - 1`` at which a tool coming down touches the first dexel.
+
+    Args:
+        points: shape (m, 2).
+        out: shape (m,), filled; -inf where no dexel lies below the tool.
+    """
+    radius = tool[6]
+    side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
+    wide_x, wide_y = (BLOCK - 1) * frame[2], (BLOCK - 1) * frame[3]
+    for k in range(first, last):
+        px, py = points[k, 0], points[k, 1]
+        best = -math.inf
+        home_x = min(max(int(math.floor((px - frame[0]) / side_x)), 0), maxima.shape[0] - 1)
+        home_y = min(max(int(math.floor((py - frame[1]) / side_y)), 0), maxima.shape[1] - 1)
+        left = max(0, int(math.floor((px - radius - frame[0]) / side_x)))
+        right = min(maxima.shape[0] - 1, int(math.floor((px + radius - frame[0]) / side_x)))
+        bottom = max(0, int(math.floor((py - radius - frame[1]) / side_y)))
+        top = min(maxima.shape[1] - 1, int(math.floor((py + radius - frame[1]) / side_y)))
+        # the block below the tip first: it most often decides, and the others are left after one comparison
+        for at in range(-1, (right - left + 1) * (top - bottom + 1)):
+            i, j = home_x, home_y
+            if at >= 0:
+                i, j = left + at // (top - bottom + 1), bottom + at % (top - bottom + 1)
+            gap_x = max(0.0, frame[0] + i * side_x - px, px - frame[0] - i * side_x - wide_x)
+            gap_y = max(0.0, frame[1] + j * side_y - py, py - frame[1] - j * side_y - wide_y)
+            near = gap_x * gap_x + gap_y * gap_y
+            if near > radius * radius or maxima[i, j] <= best:
+                continue
+            if maxima[i, j] - _profile(tool, math.sqrt(near)) <= best:
+                continue
+            for a in range(i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])):
+                for b in range(j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])):
+                    if heights[a, b] <= best:
+                        continue
+                    away = (frame[0] + a * frame[2] - px) ** 2 + (frame[1] + b * frame[3] - py) ** 2
+                    if away <= radius * radius:
+                        best = max(best, heights[a, b] - _profile(tool, math.sqrt(away)))
+        out[k] = best
+
+
+@njit(cache=True, nogil=True)
+def thinned(points: FloatArray, spacing: float, chosen: NDArray[np.bool_]) -> None:
+    """Choose points, in their order, that stand at least ``spacing`` from all chosen before.
+
+    Args:
+        points: shape (m, 2).
+        chosen: shape (m,), filled.
+    """
+    if len(points) == 0:
+        return
+    low_x, low_y = points[:, 0].min(), points[:, 1].min()
+    columns = int((points[:, 0].max() - low_x) / spacing) + 1
+    rows = int((points[:, 1].max() - low_y) / spacing) + 1
+    head = np.full(columns * rows, -1, dtype=np.int64)
+    following = np.full(len(points), -1, dtype=np.int64)
+    for k in range(len(points)):
+        x, y = points[k, 0], points[k, 1]
+        column = min(columns - 1, int((x - low_x) / spacing))
+        row = min(rows - 1, int((y - low_y) / spacing))
+        free = True
+        for c in range(max(0, column - 1), min(columns, column + 2)):
+            for r in range(max(0, row - 1), min(rows, row + 2)):
+                other = head[c * rows + r]
+                while other >= 0 and free:
+                    if (points[other, 0] - x) ** 2 + (points[other, 1] - y) ** 2 < spacing * spacing:
+                        free = False
+                    other = following[other]
+        chosen[k] = free
+        if free:
+            cell = column * rows + row
+            following[k] = head[cell]
+            head[cell] = k

@@ -6,10 +6,13 @@ from typing import Annotated
 
 import typer
 
+from twin.cli.compare import compare
 from twin.cli.export import export
+from twin.cli.identify import identify
 from twin.cli.info import info
 from twin.cli.machinable import machinable
 from twin.cli.mesh import mesh
+from twin.cli.mold import mold
 from twin.cli.paths import paths
 from twin.cli.replay import replay
 from twin.cli.schema import schema
@@ -27,7 +30,20 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, mesh, paths, verify, machinable, schema):
+for command in (
+    replay,
+    view,
+    info,
+    export,
+    compare,
+    identify,
+    mesh,
+    machinable,
+    paths,
+    verify,
+    mold,
+    schema,
+):
     app.command()(command)
 
 
