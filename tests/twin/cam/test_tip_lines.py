@@ -9,7 +9,7 @@ from support import solids
 from twin.arrays import FloatArray
 from twin.cam.drop_cutter import DropCutter
 from twin.cam.element import StructuringElement
-from twin.cam.sections import SlicedPart, slice_part
+from twin.cam.sections import Sections, SlicedPart, slice_part
 from twin.cam.surface import surface_of_mesh
 from twin.cam.tip_lines import Places, Profiles, tip_heights, tip_lines
 from twin.tools.text import parse_tool
@@ -98,6 +98,22 @@ def test_an_inner_corner_between_places_is_found() -> None:
     (line,) = tip_lines(profiles, tool, np.array([0.1]), Places.between(-2.0, 2.0, 0.1), -9.0)
     lowest = line[np.argmin(line[:, 1])]
     np.testing.assert_allclose(lowest, (0.03, np.sqrt(2.0) - 1.0), atol=1e-4)
+
+
+def test_a_ridge_between_slices_is_met() -> None:
+    # a roof whose ridge runs along the rows, at a place that no even slice has
+    ridge = np.array([(-8.0, -8.0), (8.0, -8.0), (8.0, -4.0), (0.13, 3.87), (-7.74, -4.0), (-8.0, -4.0)])
+    roof = solids.extruded(ridge)[:, :, [1, 0, 2]][:, ::-1]
+    part = slice_part(solid(roof, "roof"), 0.4)
+    assert np.abs(part.slices.positions_mm(1) - 0.13).min() > 0.05
+    tool = StructuringElement.tool(parse_tool("ball 4"))
+    rows, places = np.array([-0.5, 0.13, 1.0]), Places.between(-3.0, 3.0, 0.5)
+    heights = tip_heights(Profiles.of(part.sections(1)), tool, rows, places)
+    wanted = exact(part.mesh, "ball 4", np.column_stack((np.zeros(3), rows)), -20.0)
+    assert wanted[1] == pytest.approx(3.87, abs=1e-4)
+    np.testing.assert_allclose(heights, np.repeat(wanted[:, None], places.count, axis=1), atol=0.006)
+    even = tip_heights(Profiles.of(Sections.of(part.slices, 1)), tool, rows, places)
+    assert even[1, 0] < 3.87 - 0.05
 
 
 def test_an_allowance_lifts_as_a_larger_ball_does(torus_part: SlicedPart) -> None:

@@ -17,7 +17,9 @@ from twin.identify.identify import Prepared, identify, prepare
 from twin.identify.load import cuts_from_dict
 from twin.identify.steady import find_cut, steady_part
 
-SIDE = Pass(diameter=8.0, corner=4.0, helix_deg=30.0, rpm=3600.0, feed=1200.0, axial=3.0, wall=(-math.inf, 0.0), points=200)
+SIDE = Pass(
+    diameter=8.0, corner=4.0, helix_deg=30.0, rpm=3600.0, feed=1200.0, axial=3.0, wall=(-math.inf, 0.0), points=200
+)
 
 
 def one_cut(folder: Path, given: Pass, t: np.ndarray, force: np.ndarray, **keys: Any) -> Prepared:
