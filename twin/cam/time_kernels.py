@@ -64,7 +64,8 @@ def block_times(
     length: FloatArray, speed: FloatArray, acceleration: FloatArray, corner: FloatArray, times: FloatArray
 ) -> None:
     """Time of each block: corner speeds are lowered, backwards and forwards, to what the acceleration allows; then a
-    trapezoid or a triangle for each. ``corner`` is changed."""
+    trapezoid or a triangle for each. ``corner`` is changed.
+    """
     n = len(length)
     for k in range(n - 1, -1, -1):
         corner[k] = min(corner[k], math.sqrt(corner[k + 1] ** 2 + 2.0 * acceleration[k] * length[k]))

@@ -66,7 +66,8 @@ def paths(
     ] = None,
     climb: Annotated[bool | None, _option("Climb or conventional milling [climb].", "--climb/--conventional")] = None,
     region: Annotated[
-        tuple[float, float, float, float] | None, _option("Where the tip may be: X0 Y0 X1 Y1 [the box of part or stock].")
+        tuple[float, float, float, float] | None,
+        _option("Where the tip may be: X0 Y0 X1 Y1 [the box of part or stock]."),
     ] = None,
     overhang: Annotated[float | None, _option("How far beyond it, mm [scan 0, contour the tool's radius].")] = None,
     floor_z: Annotated[float | None, _option("Lowest tip, mm [the part's lowest point].")] = None,
