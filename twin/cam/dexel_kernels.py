@@ -416,24 +416,26 @@ def rest_heights(
     radius = tool[6]
     side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
     wide_x, wide_y = (BLOCK - 1) * frame[2], (BLOCK - 1) * frame[3]
+    # the dexel that held the tool at the last point most often nearly holds it at the next
+    last_a, last_b = 0, 0
     for k in range(first, last):
         px, py = points[k, 0], points[k, 1]
         best = -math.inf
-        home_x = min(max(int(math.floor((px - frame[0]) / side_x)), 0), maxima.shape[0] - 1)
-        home_y = min(max(int(math.floor((py - frame[1]) / side_y)), 0), maxima.shape[1] - 1)
+        away = (frame[0] + last_a * frame[2] - px) ** 2 + (frame[1] + last_b * frame[3] - py) ** 2
+        if away <= radius * radius:
+            best = heights[last_a, last_b] - _profile(tool, math.sqrt(away))
         left = max(0, int(math.floor((px - radius - frame[0]) / side_x)))
         right = min(maxima.shape[0] - 1, int(math.floor((px + radius - frame[0]) / side_x)))
         bottom = max(0, int(math.floor((py - radius - frame[1]) / side_y)))
         top = min(maxima.shape[1] - 1, int(math.floor((py + radius - frame[1]) / side_y)))
-        # the block below the tip first: it most often decides, and the others are left after one comparison
-        for at in range(-1, (right - left + 1) * (top - bottom + 1)):
-            i, j = home_x, home_y
-            if at >= 0:
-                i, j = left + at // (top - bottom + 1), bottom + at % (top - bottom + 1)
+        for at in range((right - left + 1) * (top - bottom + 1)):
+            i, j = left + at // (top - bottom + 1), bottom + at % (top - bottom + 1)
+            if maxima[i, j] <= best:
+                continue
             gap_x = max(0.0, frame[0] + i * side_x - px, px - frame[0] - i * side_x - wide_x)
             gap_y = max(0.0, frame[1] + j * side_y - py, py - frame[1] - j * side_y - wide_y)
             near = gap_x * gap_x + gap_y * gap_y
-            if near > radius * radius or maxima[i, j] <= best:
+            if near > radius * radius:
                 continue
             if maxima[i, j] - _profile(tool, math.sqrt(near)) <= best:
                 continue
@@ -443,7 +445,9 @@ def rest_heights(
                         continue
                     away = (frame[0] + a * frame[2] - px) ** 2 + (frame[1] + b * frame[3] - py) ** 2
                     if away <= radius * radius:
-                        best = max(best, heights[a, b] - _profile(tool, math.sqrt(away)))
+                        tip = heights[a, b] - _profile(tool, math.sqrt(away))
+                        if tip > best:
+                            best, last_a, last_b = tip, a, b
         out[k] = best
 
 
