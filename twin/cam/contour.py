@@ -1,7 +1,7 @@
 """Contour paths: at every level the outlines of the inflated part's section, and further ones outside of them.
 
 The tri-slice paper, section 3.1: xy slices of the inflated part are tool paths; expanded by the radial depth of cut
-they are the layers before them. The part is inflated by the whole tool, shank and all, so what lies above a level counts.
+they are the layers before them. The part is inflated by the whole tool, shank and all: what lies above a level counts.
 """
 
 from __future__ import annotations

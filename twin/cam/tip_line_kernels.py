@@ -24,6 +24,8 @@ _TABLE = 65
 _ALIKE = 4.0
 #: Sections asked within a cell: the one touched at an end, and those beside it.
 _ASKED = 5
+#: Slope between two sections above which there is a wall between them.
+_CLIFF = 5.0
 #: Part of a step by which pieces reach further, so that a tool that just touches a wall counts as touching it.
 _TIE = 1e-7
 #: Sections closer than this are taken for one, mm.
@@ -233,6 +235,48 @@ def _highest(y: FloatArray, rows: FloatArray, smooth: bool, heights: FloatArray,
 
 
 @njit(cache=True, nogil=True)
+def _profile_row(segments: FloatArray, start: float, step: float, row: FloatArray) -> None:
+    """Heights of a section itself."""
+    row[:] = -math.inf
+    for i in range(len(segments)):
+        first = max(0, math.ceil((segments[i, 0] - start) / step - _TIE))
+        last = min(len(row) - 1, math.floor((segments[i, 2] - start) / step + _TIE))
+        climb = -segments[i, 4] / segments[i, 5]
+        for k in range(first, last + 1):
+            row[k] = max(row[k], segments[i, 1] + climb * (start + step * k - segments[i, 0]))
+
+
+@njit(cache=True, nogil=True)
+def _raise_ends(
+    segments: FloatArray,
+    segment_begins: NDArray[np.int64],
+    positions: FloatArray,
+    plane: float,
+    radius: float,
+    start: float,
+    step: float,
+    two: FloatArray,
+    heights: FloatArray,
+) -> None:
+    """The two points of a flat bottom that are farthest from the plane, over the part between the sections there."""
+    for side in (-1.0, 1.0):
+        at = plane + side * radius
+        k = np.searchsorted(positions, at)
+        if k == 0 or k == len(positions):
+            continue
+        gap = positions[k] - positions[k - 1]
+        if gap < _SAME_MM:
+            continue
+        share = (at - positions[k - 1]) / gap
+        for j in range(2):
+            m = k - 1 + j
+            _profile_row(segments[segment_begins[m] : segment_begins[m + 1]], start, step, two[j])
+        for i in range(len(heights)):
+            if two[0, i] > -math.inf and abs(two[1, i] - two[0, i]) <= _CLIFF * gap:
+                heights[i] = max(heights[i], two[0, i] + share * (two[1, i] - two[0, i]))
+
+
+@njit(cache=True, nogil=True)
 def envelope(
     segments: FloatArray,
     segment_begins: NDArray[np.int64],
@@ -265,7 +309,7 @@ def envelope(
     for p in range(len(planes)):
         first, last = _reach(positions, planes[p], radius)
         most = max(most, last - first)
-    rows = np.empty((most, heights.shape[1]))
+    rows, two = np.empty((most, heights.shape[1])), np.empty((2, heights.shape[1]))
     place, slope = np.empty(_TABLE), np.empty(_TABLE)
     for p in range(len(planes)):
         first, last = _reach(positions, planes[p], radius)
@@ -285,6 +329,8 @@ def envelope(
                 near[k - first],
             )
         _highest(positions[first:last], near, smooth, heights[p], best[p])
+        if smooth and corner == 0.0:
+            _raise_ends(segments, segment_begins, positions, planes[p], radius, start, step, two, heights[p])
         for i in range(heights.shape[1]):
             if best[p, i] >= 0:
                 best[p, i] += first
@@ -315,7 +361,7 @@ def refine(
     """
     radius = disc + corner
     n = heights.shape[1]
-    rows, here = np.empty((_ASKED, n)), np.empty(n)
+    rows, two, here = np.empty((_ASKED, n)), np.empty((2, n)), np.empty(n)
     best = np.empty(n, dtype=np.int64)
     place, slope = np.empty(_TABLE), np.empty(_TABLE)
     for c in range(len(cells)):
@@ -344,3 +390,6 @@ def refine(
             _highest(positions[first : max(first, last)], near, smooth, here, best)
             for i in range(n):
                 heights[c, i] = max(heights[c, i], here[i])
+        if smooth and corner == 0.0:
+            plane, begin_at = cells[c, 0], cells[c, 1]
+            _raise_ends(segments, segment_begins, positions, plane, radius, begin_at, step, two, heights[c])

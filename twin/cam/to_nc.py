@@ -12,6 +12,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from gcode.dialects import dialect_named
 from gcode.errors import Place
 from gcode.events import (
@@ -155,13 +157,17 @@ def kind_of(tool: ToolShape) -> Literal["flat", "ball", "bull", "taper"]:
 def nc_events(operations: Iterable[Operation], options: NcOptions) -> Iterator[Event]:
     """The events of a program: tool, spindle, coolant, motions with a length offset, end."""
     tool, at, spindle, coolant = 0, None, 0.0, "off"
+    last: Operation | None = None
     for operation in operations:
         state = _state(operation, options)
         if operation.number != tool:
+            if last is not None and at is not None:
+                yield from _above_longer(last, at, operation, _state(last, options))
+                at = _tip_after_change(last, at, operation)
             if tool and coolant != "off":
                 yield CoolantChange(place=_NOWHERE, mist=False, flood=False)
             yield ToolChange(place=_NOWHERE, tool=operation.number)
-            tool, at, spindle, coolant = operation.number, None, 0.0, "off"
+            tool, spindle, coolant = operation.number, 0.0, "off"
         if operation.spindle_rpm != spindle:
             spindle = operation.spindle_rpm
             yield SpindleChange(place=_NOWHERE, spindle_rpm=spindle, spindle_direction=1)
@@ -169,10 +175,26 @@ def nc_events(operations: Iterable[Operation], options: NcOptions) -> Iterator[E
             coolant = operation.coolant
             yield CoolantChange(place=_NOWHERE, mist=coolant == "mist", flood=coolant == "flood")
         yield from _motions(operation, state, at)
-        at = operation.path.moves[-1].end_mm
+        at, last = operation.path.moves[-1].end_mm, operation
     yield CoolantChange(place=_NOWHERE, mist=False, flood=False)
     yield SpindleChange(place=_NOWHERE, spindle_rpm=spindle, spindle_direction=0)
     yield ProgramStop(place=_NOWHERE, optional=False, end=True)
+
+
+def _above_longer(last: Operation, at: FloatArray, following: Operation, state: MotionState) -> Iterator[LinearMotion]:
+    """Up by as much as the following tool is longer, so that its tip is no lower than this one's."""
+    longer = following.length_mm - last.length_mm
+    if longer > 0.0:
+        above = (float(at[0]), float(at[1]), float(at[2]) + longer)
+        yield LinearMotion(
+            place=_NOWHERE, state=state, start_mm=_point(at), end_mm=above, rapid=True, feed_mm_min=0.0
+        )
+
+
+def _tip_after_change(last: Operation, at: FloatArray, following: Operation) -> FloatArray:
+    """Where the tip of the following tool is: the spindle stays where it is."""
+    shorter = max(0.0, last.length_mm - following.length_mm)
+    return np.array([at[0], at[1], at[2] + shorter])
 
 
 def _state(operation: Operation, options: NcOptions) -> MotionState:

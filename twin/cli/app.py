@@ -8,23 +8,27 @@ import typer
 
 from twin.cli.export import export
 from twin.cli.info import info
+from twin.cli.machinable import machinable
 from twin.cli.mesh import mesh
+from twin.cli.mold import mold
+from twin.cli.paths import paths
 from twin.cli.replay import replay
 from twin.cli.schema import schema
+from twin.cli.verify import verify
 from twin.cli.view import view
 
 app = typer.Typer(
     name="twin",
     help="A machining digital twin: replays NC programs, removes material, predicts cutting forces.",
     epilog="Exit codes: 0 done, 1 a mistake that the message names, 2 wrong arguments, 3 a collision under --strict, "
-    "130 Ctrl-C.",
+    "4 out of tolerance, 130 Ctrl-C.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, mesh, schema):
+for command in (replay, view, info, export, mesh, machinable, paths, verify, mold, schema):
     app.command()(command)
 
 

@@ -8,5 +8,7 @@ ERROR = 1
 USAGE = 2
 #: A strict replay ended at a collision.
 COLLISION = 3
+#: What was machined, or measured, is out of tolerance.
+OUT_OF_TOLERANCE = 4
 #: Ended by a signal: this plus its number, so 130 for Ctrl-C.
 SIGNAL = 128

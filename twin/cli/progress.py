@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Protocol, Self
 
@@ -97,3 +98,24 @@ class LineProgress:
 
     def __exit__(self, *_: object) -> None:
         self._bar.stop()
+
+
+@contextmanager
+def working(*, quiet: bool) -> Iterator[Callable[[str, float], None]]:
+    """A bar for work in stages; gives what to tell a stage's name and share done. Draws where `progress` does."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda _what, _share: None
+        return
+    from rich import progress as rich
+
+    bar = rich.Progress(
+        rich.TextColumn("{task.description}", style="bold"),
+        rich.BarColumn(bar_width=28),
+        rich.TaskProgressColumn(),
+        rich.TimeElapsedColumn(),
+        console=errors(),
+        transient=True,
+    )
+    task = bar.add_task("beginning", total=1.0)
+    with bar:
+        yield lambda what, share: bar.update(task, description=what, completed=share)

@@ -231,6 +231,11 @@ class Job(JobFile):
         """The same job with another implementation of the slices."""
         return self.model_copy(update={"simulation": self.simulation.model_copy(update={"store": store})})
 
+    def with_pitch(self, pitch_mm: float) -> Job:
+        """The same job with slices at another distance."""
+        update = {"slice_pitch_mm": pitch_mm}
+        return self.model_copy(update={"simulation": self.simulation.model_copy(update=update)})
+
     def without_forces(self) -> Job:
         """The same job without cutting coefficients."""
         tools = tuple(tool.model_copy(update={"cutting": None}) for tool in self.tools)

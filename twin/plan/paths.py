@@ -6,7 +6,6 @@ path = plan(settings, part)
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -261,8 +260,3 @@ def _said(settings: PathSettings, ground: Ground) -> Iterator[str]:
     for key, value in settings.model_dump(exclude_defaults=True).items():
         if key not in ("strategy", "tool"):
             yield f"{key} {' '.join(f'{v:g}' for v in value) if isinstance(value, tuple) else value}"
-
-
-def unreachable_bound_mm(settings: PathSettings, radius_mm: float) -> float:
-    """Largest error of a section between two slices that lie a pitch apart: r - sqrt(r^2 - (pitch/2)^2)."""
-    return radius_mm - math.sqrt(max(0.0, radius_mm**2 - (0.5 * settings.pitch_mm) ** 2))

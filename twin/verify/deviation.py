@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from twin.arrays import FloatArray, frozen
@@ -55,10 +55,10 @@ class Limits:
             high = np.array([*region[2:], high[2]])
         return cls(low_mm=low, high_mm=np.array([high[0], high[1], math.inf]))
 
-    def hold(self, points_mm: FloatArray) -> FloatArray:
-        """Whether points lie inside, a little slack at the sides included."""
-        slack = 1e-6
-        return np.all((points_mm >= self.low_mm - slack) & (points_mm <= self.high_mm + slack), axis=1)
+    def hold(self, points_mm: FloatArray) -> NDArray[np.bool_]:
+        """Whether points lie inside, those on its sides included."""
+        over = (points_mm >= self.low_mm - _FLUSH_MM) & (points_mm <= self.high_mm + _FLUSH_MM)
+        return np.asarray(np.all(over, axis=1))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -73,7 +73,7 @@ class Deviation:
             shape (m, 3) and (m,).
         tolerance_mm: allowed gouge; excess_mm: allowed excess.
         gouged_mm3, left_mm3: volume of the design that is gone, volume left outside of it.
-        lost_mm: how far the nearest machined surface is from the point of the design that is missing most, 0 if none is.
+        lost_mm: how far the nearest machined surface is from the point of the design that is missing most, 0 for none.
         resolution_mm: what distances at the points are known to.
         pitch_mm: largest distance of the rays; what is smaller may stand between them unseen.
         places: of gouges and excess beyond tolerance, the worst first.
@@ -197,11 +197,11 @@ def _one_direction(
     return points[touched], near.distance_mm[touched], area[touched], wanted[seen], over, volumes
 
 
-def _flush(points: FloatArray, store: TriSlices) -> FloatArray:
+def _flush(points: FloatArray, store: TriSlices) -> NDArray[np.bool_]:
     """Points on the faces of the stock's box."""
     low = np.abs(points - store.low_mm) <= _FLUSH_MM
     high = np.abs(points - store.high_mm) <= _FLUSH_MM
-    return np.any(low | high, axis=1)
+    return np.asarray(np.any(low | high, axis=1))
 
 
 def _lost(points: FloatArray, wanted: FloatArray, over: FloatArray, least_mm: float) -> float:

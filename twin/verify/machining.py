@@ -85,11 +85,9 @@ def _moves(job: Job) -> Iterator[Move]:
         tool_length_mm={t.number: t.length_mm for t in job.tools},
         rapid_mm_min=job.machine.rapid_mm_min,
     )
-    return (m for m in moves if isinstance(m, Move) and np.any(m.start_mm != m.end_mm) or _is_arc(m))
-
-
-def _is_arc(item: object) -> bool:
-    return isinstance(item, Move) and item.arc is not None
+    for item in moves:
+        if isinstance(item, Move) and item.length_mm > 0.0:
+            yield item
 
 
 def _box(move: Move) -> tuple[FloatArray, FloatArray]:

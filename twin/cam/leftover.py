@@ -1,0 +1,150 @@
+"""Material left on a part, as connected regions over slices: how much, how thick, where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from twin.arrays import FloatArray
+from twin.cam import leftover_kernels as kernels
+from twin.cam.sections import Sections
+from twin.geometry.shapes import Shapes
+from twin.workpiece.store import PLANE_AXES
+
+#: A piece on a plane counts when its mean width is above this part of the pitch.
+_WIDTH_PITCHES = 0.01
+#: Pieces on neighbouring planes that are this many pitches apart belong together: thin regions may lie aslant.
+_NEAR_PITCHES = 3.0
+#: Places on the outline of a piece where its thickness is measured, at most.
+_MEASURED = 128
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Leftover:
+    """One connected region of material that stays.
+
+    Attributes:
+        volume_mm3: by the midpoint rule over its slices.
+        thickness_mm: largest distance from the part.
+        deepest_mm: where that is, shape (3,).
+        low_mm, high_mm: corners of its box, shape (3,).
+        centroid_mm: shape (3,).
+        axis: normal of its slices.
+        planes_mm: position of each of its pieces.
+        pieces: polygons, one or more a plane.
+    """
+
+    volume_mm3: float
+    thickness_mm: float
+    deepest_mm: FloatArray
+    low_mm: FloatArray
+    high_mm: FloatArray
+    centroid_mm: FloatArray
+    axis: int
+    planes_mm: FloatArray
+    pieces: Shapes
+
+
+def leftovers(
+    left: Shapes, planes_mm: FloatArray, pitch_mm: float, sections: Sections, thin_mm: float
+) -> tuple[Leftover, ...]:
+    """Connect what is left on planes to regions.
+
+    Args:
+        left: what is left on each plane.
+        sections: the part's own sections across the same axis.
+        thin_mm: regions nowhere thicker than this are left out.
+
+    Returns:
+        The regions, the largest first.
+    """
+    pieces, owners = shapely.get_parts(left, return_index=True)
+    width = 2.0 * shapely.area(pieces) / np.maximum(shapely.length(pieces), 1e-300)
+    wanted = (shapely.get_type_id(pieces) == 3) & (width > _WIDTH_PITCHES * pitch_mm)
+    pieces, owners = pieces[wanted], owners[wanted]
+    if len(pieces) == 0:
+        return ()
+    points, of = _outline_points(pieces)
+    distance = _distances(points, planes_mm[owners[of]], sections)
+    labels = _connected(pieces, owners, pitch_mm)
+    found = []
+    for label in range(labels.max() + 1):
+        mine = np.flatnonzero(labels == label)
+        places = np.flatnonzero(labels[of] == label)
+        deepest = places[np.argmax(distance[places])]
+        if distance[deepest] > thin_mm:
+            at = _in_space(points[deepest], planes_mm[owners[of[deepest]]], sections.axis)
+            shape = pieces[mine], planes_mm[owners[mine]]
+            found.append(_leftover(*shape, pitch_mm, sections.axis, float(distance[deepest]), at))
+    return tuple(sorted(found, key=lambda r: -r.volume_mm3))
+
+
+def _leftover(
+    pieces: Shapes, planes_mm: FloatArray, pitch_mm: float, axis: int, thickness_mm: float, deepest_mm: FloatArray
+) -> Leftover:
+    areas, bounds = shapely.area(pieces), shapely.bounds(pieces)
+    middles = shapely.get_coordinates(shapely.centroid(pieces))
+    centroid = _in_space(areas @ middles / areas.sum(), float(areas @ planes_mm / areas.sum()), axis)
+    half = 0.5 * pitch_mm
+    return Leftover(
+        volume_mm3=float(areas.sum()) * pitch_mm,
+        thickness_mm=thickness_mm,
+        deepest_mm=deepest_mm,
+        low_mm=_in_space(bounds[:, :2].min(axis=0), float(planes_mm.min()) - half, axis),
+        high_mm=_in_space(bounds[:, 2:].max(axis=0), float(planes_mm.max()) + half, axis),
+        centroid_mm=centroid,
+        axis=axis,
+        planes_mm=planes_mm,
+        pieces=pieces,
+    )
+
+
+def _in_space(point: FloatArray, plane: float, axis: int) -> FloatArray:
+    """A point of a plane in (x, y, z)."""
+    space = np.empty(3)
+    space[list(PLANE_AXES[axis])] = point
+    space[axis] = plane
+    return space
+
+
+def _outline_points(pieces: Shapes) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Places on the outlines of pieces, and the piece of each."""
+    points, of = shapely.get_coordinates(pieces, return_index=True)
+    counts = np.bincount(of, minlength=len(pieces))
+    every = np.maximum(1, counts // _MEASURED)
+    place = np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
+    kept = place % every[of] == 0
+    return points[kept], of[kept].astype(np.int64)
+
+
+def _distances(points: FloatArray, planes_mm: FloatArray, sections: Sections) -> FloatArray:
+    """Distance of points on planes from a part, as its sections know it."""
+    rings = [ring for region in sections.regions for ring in region.rings]
+    edges = [np.hstack((ring, np.roll(ring, -1, axis=0))) for ring in rings]
+    counts = np.array([sum(len(ring) for ring in region.rings) for region in sections.regions])
+    begins = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
+    found = np.empty(len(points))
+    kernels.distances(
+        points,
+        np.ascontiguousarray(planes_mm),
+        np.concatenate(edges) if edges else np.empty((0, 4)),
+        begins,
+        sections.positions_mm,
+        found,
+    )
+    return found
+
+
+def _connected(pieces: Shapes, owners: NDArray[np.int64], pitch_mm: float) -> NDArray[np.int64]:
+    """Number of the region of each piece: pieces that overlap, or nearly so, on neighbouring planes belong together."""
+    tree = shapely.STRtree(pieces)
+    one, other = tree.query(pieces, predicate="dwithin", distance=_NEAR_PITCHES * pitch_mm)
+    near = np.abs(owners[one] - owners[other]) <= 1
+    graph = coo_array((np.ones(near.sum(), dtype=np.int8), (one[near], other[near])), shape=(len(pieces),) * 2)
+    _, labels = connected_components(graph, directed=False)
+    return np.asarray(labels, dtype=np.int64)

@@ -1,0 +1,138 @@
+"""What a tool cannot reach: the part inflated, shrunk again, and compared (the tri-slice paper, section 3.2).
+
+The inflated part is where the tool's reference point may not be; everything else is swept with the tool and taken away.
+What is left and is no part of the part, the tool cannot remove. With a ball about its centre the tool may come from any
+side; with a tool about its tip it comes from above, and what lies below an overhang is out of reach.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from twin.arrays import FloatArray
+from twin.cam.element import StructuringElement
+from twin.cam.leftover import Leftover, leftovers
+from twin.cam.offset import CHORD_PITCHES, arc_segments, convolved
+from twin.cam.sections import Sections, SlicedPart, face_levels
+from twin.geometry.shapes import Shapes, to_shapes
+from twin.workpiece.store import PLANE_AXES
+
+#: How far above a face a tool that stands on it is taken to be, mm: far above rounding, far below any tolerance.
+_ON_MM = 1e-5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reach:
+    """What one tool leaves on a part.
+
+    Attributes:
+        element: the tool.
+        axis: normal of the slices it was found on.
+        pitch_mm: their distance.
+        thin_mm: what is nowhere thicker than this is noise of the slices and left out.
+        leftovers: connected regions that stay, the largest first.
+    """
+
+    element: StructuringElement
+    axis: int
+    pitch_mm: float
+    thin_mm: float
+    leftovers: tuple[Leftover, ...]
+
+    @property
+    def volume_mm3(self) -> float:
+        """Material that stays."""
+        return sum((r.volume_mm3 for r in self.leftovers), 0.0)
+
+    @property
+    def thickness_mm(self) -> float:
+        """Where it is thickest, distance from the part; 0 where nothing stays."""
+        return max((r.thickness_mm for r in self.leftovers), default=0.0)
+
+
+def unmachinable(
+    part: SlicedPart,
+    element: StructuringElement,
+    *,
+    axis: int = 2,
+    thin_mm: float | None = None,
+    threads: int | None = None,
+) -> Reach:
+    """What a tool leaves on a part.
+
+    Args:
+        element: `StructuringElement.ball` for a ball that may come from any side, `StructuringElement.tool` for a tool
+            from above.
+        axis: normal of the slices to work on; 2 for tools from above.
+        thin_mm: least thickness that counts; `thin_bound_mm` where not told.
+        threads: threads to work with, all cores if not given; results do not depend on it.
+
+    Raises:
+        ValueError: a tool from above on slices that do not lie across z.
+    """
+    if axis != 2 and not element.centred:
+        raise ValueError(f"tools from above need slices across z, got axis {axis}")
+    pitch = float(part.slices.pitch_mm[axis])
+    least = thin_bound_mm(element, pitch) if thin_mm is None else thin_mm
+    sections = part.sections(axis)
+    planes = part.slices.positions_mm(axis)
+    closed = _closed(part, sections, planes, element, threads)
+    own = to_shapes(part.slices.regions[axis])
+    left = shapely.difference(closed, own)
+    found = leftovers(left, planes, pitch, sections, least)
+    return Reach(element=element, axis=axis, pitch_mm=pitch, thin_mm=least, leftovers=found)
+
+
+def thin_bound_mm(element: StructuringElement, pitch_mm: float) -> float:
+    """Thickness up to which leftovers may come from the slices' pitch alone.
+
+    Where a surface lies nearly along the slices these know it to about half a pitch; the tool's sweep over it between
+    two planes misses as much again, less what its radius bridges.
+    """
+    return min(pitch_mm, 0.5 * pitch_mm + pitch_mm**2 / element.radius_mm)
+
+
+def _closed(
+    part: SlicedPart, sections: Sections, planes: FloatArray, element: StructuringElement, threads: int | None
+) -> Shapes:
+    """Sections of what stays: everything that no position of the tool reaches, within the part's box."""
+    radius, pitch = element.radius_mm, float(part.slices.pitch_mm[sections.axis])
+    u, v = PLANE_AXES[sections.axis]
+    low, high = part.slices.low_mm, part.slices.high_mm
+    outer = shapely.box(*(low[[u, v]] - 3.0 * radius), *(high[[u, v]] + 3.0 * radius))
+    box = shapely.box(low[u], low[v], high[u], high[v])
+    segments = arc_segments(radius, CHORD_PITCHES * pitch)
+    places = _tool_places(part, sections.axis, planes, element)
+    inflated = convolved(
+        to_shapes(sections.regions), sections.positions_mm, places, _towards(element, sections.axis), segments, threads
+    )
+    free = shapely.difference(outer, inflated)
+    swept = convolved(free, places, planes, _away(element, sections.axis), segments, threads)
+    return np.asarray(shapely.difference(box, swept), dtype=object)
+
+
+def _tool_places(part: SlicedPart, axis: int, planes: FloatArray, element: StructuringElement) -> FloatArray:
+    """Planes for the tool's reference point: evenly spaced, and where it stands on faces across the axis."""
+    pitch, radius = float(part.slices.pitch_mm[axis]), element.radius_mm
+    more = math.ceil(radius / pitch + 1.0)
+    low, high = face_levels(part.mesh, axis)
+    first = -more if element.centred or axis != 2 else 0
+    even = planes[0] + pitch * np.arange(first, len(planes) + more)
+    on = [high + element.drop_mm + _ON_MM]
+    if element.centred:
+        on.append(low - element.drop_mm - _ON_MM)
+    return np.unique(np.concatenate((even, *on)))
+
+
+def _towards(element: StructuringElement, axis: int):  # type: ignore[no-untyped-def]
+    return element.z_radii_mm if axis == 2 else element.ball_radii_mm
+
+
+def _away(element: StructuringElement, axis: int):  # type: ignore[no-untyped-def]
+    if axis != 2:
+        return element.ball_radii_mm
+    return lambda above: element.z_radii_mm(-above)

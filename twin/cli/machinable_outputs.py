@@ -1,0 +1,113 @@
+"""Files that ``twin machinable`` writes: a recording, meshes, a picture."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from twin.errors import ArchiveError, MeshError
+
+if TYPE_CHECKING:
+    from twin.cam.machinable import Reach
+    from twin.cam.sections import SlicedPart
+
+_PART_COLOR = (150, 156, 164, 255)
+#: Colours of the tools' leftovers, in their order.
+_COLORS = ((226, 66, 40, 255), (240, 168, 40, 255), (60, 132, 226, 255), (58, 176, 92, 255), (166, 84, 196, 255))
+
+
+def check(rrd: Path | None, mesh: Path | None, plot: Path | None, tools: Sequence[str], *, force: bool) -> None:
+    """Refuse outputs that could not be written, before long work.
+
+    Raises:
+        ArchiveError, MeshError: a file that is there, a suffix without a writer, a folder that is not there.
+    """
+    for path, suffix in ((rrd, ".rrd"), (plot, ".png")):
+        if path is None:
+            continue
+        if path.suffix.lower() != suffix:
+            raise ArchiveError(f"{path}: expected a file name that ends in {suffix}")
+        if path.exists() and not force:
+            raise ArchiveError(f"{path}: is there already; expected a new name, or leave to replace it (--force)")
+        if not path.parent.is_dir():
+            raise ArchiveError(f"{path}: there is no folder {path.parent}; expected one that exists")
+    if mesh is not None:
+        if mesh.exists() and not mesh.is_dir():
+            raise MeshError(f"{mesh}: is a file; expected a folder for meshes")
+        for path in (mesh / _file_name(text) for text in tools):
+            if path.exists() and not force:
+                raise MeshError(f"{path}: is there already; expected a new name, or leave to replace it (--force)")
+
+
+@contextmanager
+def progress_line() -> Iterator[Callable[[str], None]]:
+    """A line on the terminal that says what is being worked on; nothing where standard error is none."""
+    if not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    from twin.cli.console import errors
+
+    with errors().status("slicing") as status:
+        yield lambda text: status.update(text)
+
+
+def write(
+    sliced: SlicedPart,
+    reaches: dict[str, Reach],
+    rrd: Path | None,
+    mesh: Path | None,
+    plot: Path | None,
+    *,
+    force: bool,
+) -> None:
+    """Write what was asked for; a tool that leaves nothing has no mesh."""
+    if mesh is not None:
+        _write_meshes(reaches, mesh, force=force)
+    if rrd is not None:
+        _write_recording(sliced, reaches, rrd, force=force)
+    if plot is not None:
+        from twin.cli.machinable_plot import write_plot
+
+        write_plot(plot, sliced, reaches)
+
+
+def _write_meshes(reaches: dict[str, Reach], folder: Path, *, force: bool) -> None:
+    from twin.cam.leftover_mesh import leftover_mesh
+    from twin.workpiece.mesh_file import write_mesh
+
+    folder.mkdir(parents=True, exist_ok=True)
+    for text, reach in reaches.items():
+        if reach.leftovers:
+            write_mesh(folder / _file_name(text), leftover_mesh(reach.leftovers, reach.pitch_mm), force=force)
+
+
+def _write_recording(sliced: SlicedPart, reaches: dict[str, Reach], path: Path, *, force: bool) -> None:
+    from twin.cam.leftover_mesh import leftover_mesh
+    from twin.sinks.rerun_solids import SolidView, write_solids
+
+    part = sliced.mesh
+    views = [SolidView(entity="part", vertices_mm=part.vertices_mm, triangles=part.triangles, color=_PART_COLOR)]
+    for number, (text, reach) in enumerate(reaches.items()):
+        if reach.leftovers:
+            made = leftover_mesh(reach.leftovers, reach.pitch_mm)
+            views.append(
+                SolidView(
+                    entity=f"leftover/{_slug(text)}",
+                    vertices_mm=made.vertices_mm,
+                    triangles=made.triangles,
+                    color=_COLORS[number % len(_COLORS)],
+                    text=f"{text}: {reach.volume_mm3:.4g} mm³ stay, {reach.thickness_mm:.3f} mm at most",
+                )
+            )
+    write_solids(path, f"{Path(part.name).name}: what tools cannot reach", views, force=force)
+
+
+def _slug(text: str) -> str:
+    return "_".join(text.split()).replace(".", "p")
+
+
+def _file_name(text: str) -> str:
+    return f"{_slug(text)}.stl"
