@@ -234,7 +234,7 @@ class MoldChain:
         self._say("finish", "finishing", 0.0)
         begin = time.perf_counter()
         cutter = self.cutter(self.job.finish)
-        path = finishing(self.space, cutter, self.finishing_options, before)
+        path = finishing(self.space, cutter, self.finishing_options, before, self.job.machine.dynamics)
         return self._result("finish", path, before.copy(), self.shape(self.job.finish), begin, {})
 
     @cached_property
