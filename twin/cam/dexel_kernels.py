@@ -109,6 +109,10 @@ def block_maxima(heights: FloatArray, maxima: FloatArray) -> None:
 @njit(cache=True, nogil=True)
 def _ball_block(
     heights: FloatArray,
+    i0: int,
+    i1: int,
+    j0: int,
+    j1: int,
     ex0: float,
     ey0: float,
     pitch_x: float,
@@ -134,9 +138,10 @@ def _ball_block(
         centre = centre + min(0.0, dz)
         dz = 0.0
     r2 = radius * radius
-    for i in range(heights.shape[0]):
+    for i in range(i1 - i0):
+        row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
-        for j in range(heights.shape[1]):
+        for j in range(len(row)):
             ey = ey0 + j * pitch_y
             cross = ex * dy - ey * dx
             away = cross * cross * inverse if square > 0.0 else ex * ex + ey * ey
@@ -149,15 +154,19 @@ def _ball_block(
             t = min(max(middle - lead * root, first), last)
             off = t - middle
             z = max(bottom, centre + dz * t - math.sqrt(max(0.0, inside - square * off * off)))
-            old = heights[i, j]
+            old = row[j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
-            heights[i, j] = new
+            row[j] = new
             largest[j] = max(largest[j], new)
 
 
 @njit(cache=True, nogil=True)
 def _flat_block(
     heights: FloatArray,
+    i0: int,
+    i1: int,
+    j0: int,
+    j1: int,
     ex0: float,
     ey0: float,
     pitch_x: float,
@@ -177,9 +186,10 @@ def _flat_block(
         tip = tip + min(0.0, dz)
         dz = 0.0
     r2 = radius * radius
-    for i in range(heights.shape[0]):
+    for i in range(i1 - i0):
+        row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
-        for j in range(heights.shape[1]):
+        for j in range(len(row)):
             ey = ey0 + j * pitch_y
             cross = ex * dy - ey * dx
             away = cross * cross * inverse if square > 0.0 else ex * ex + ey * ey
@@ -189,15 +199,19 @@ def _flat_block(
             first = max(0.0, middle - half)
             last = min(1.0, middle + half)
             z = max(bottom, tip + dz * (first if dz > 0.0 else last))
-            old = heights[i, j]
+            old = row[j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
-            heights[i, j] = new
+            row[j] = new
             largest[j] = max(largest[j], new)
 
 
 @njit(cache=True, nogil=True)
 def _round_block(
     heights: FloatArray,
+    i0: int,
+    i1: int,
+    j0: int,
+    j1: int,
     ex0: float,
     ey0: float,
     pitch_x: float,
@@ -214,16 +228,17 @@ def _round_block(
     square = dx * dx + dy * dy
     length = math.sqrt(square)
     radius = tool[6]
-    for i in range(heights.shape[0]):
+    for i in range(i1 - i0):
+        row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
-        for j in range(heights.shape[1]):
+        for j in range(len(row)):
             ey = ey0 + j * pitch_y
-            old = heights[i, j]
+            old = row[j]
             largest[j] = max(largest[j], old)
             if square == 0.0:
                 away = math.sqrt(ex * ex + ey * ey)
                 if away <= radius:
-                    heights[i, j] = min(old, max(bottom, tip + min(0.0, dz) + _profile(tool, away)))
+                    row[j] = min(old, max(bottom, tip + min(0.0, dz) + _profile(tool, away)))
                 continue
             q = abs(ex * dy - ey * dx) / length
             rest = radius * radius - q * q
@@ -255,7 +270,51 @@ def _round_block(
                         s = min(max(-s if slope > 0.0 else s, low), high)
             z = tip + (foot + s) * slope + _profile(tool, min(radius, math.sqrt(q * q + s * s)))
             if z < old:
-                heights[i, j] = max(bottom, z)
+                row[j] = max(bottom, z)
+
+
+@njit(cache=True, nogil=True)
+def _reached(
+    maxima: FloatArray,
+    near: NDArray[np.bool_],
+    bottom: int,
+    top: int,
+    ex: float,
+    ey0: float,
+    side_y: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    z0: float,
+    inverse: float,
+    window: float,
+    diagonal: float,
+    underside: float,
+    tool: FloatArray,
+) -> None:
+    """Which blocks of one row a tool on a line may reach: those nearer than its radius at the block's largest height.
+
+    Args:
+        maxima: largest height of each block of the row.
+        near: filled from ``bottom`` to ``top``.
+        ex, ey0: centre of the row's first block, seen from the start.
+        inverse: 1 / square of the level length, 0 for none.
+        window: part of the line within which the tool's reach covers some of a block.
+    """
+    down = min(0.0, dz) if inverse == 0.0 else 0.0
+    for j in range(bottom, top + 1):
+        ey = ey0 + j * side_y
+        middle = (ex * dx + ey * dy) * inverse
+        t = min(max(middle, 0.0), 1.0)
+        off_x, off_y = ex - t * dx, ey - t * dy
+        at = middle - window if dz > 0.0 else middle + window
+        lowest = z0 + down + (dz * min(max(at, 0.0), 1.0) if inverse > 0.0 else 0.0)
+        over = maxima[j] - lowest
+        arc = min(max(over, 0.0), tool[4])
+        wide = tool[0] + math.sqrt(max(0.0, arc * (2.0 * tool[1] - arc))) + max(0.0, over - tool[4]) * tool[2]
+        reach = min(wide, tool[6]) + diagonal
+        away = off_x * off_x + off_y * off_y
+        near[j] = (over > 0.0) & (maxima[j] > underside) & (away <= reach * reach)
 
 
 @njit(cache=True, nogil=True)
@@ -286,6 +345,7 @@ def cut_lines(
     reach_x, reach_y = 0.5 * (BLOCK - 1) * frame[2], 0.5 * (BLOCK - 1) * frame[3]
     diagonal = math.hypot(reach_x, reach_y) * (1.0 + 1e-12)
     largest = np.empty(BLOCK)
+    near = np.empty(maxima.shape[1], dtype=np.bool_)
     for k in range(len(starts)):
         x0, y0, z0 = starts[k, 0], starts[k, 1], starts[k, 2]
         dx, dy, dz = ends[k, 0] - x0, ends[k, 1] - y0, ends[k, 2] - z0
@@ -298,37 +358,73 @@ def cut_lines(
         window = (radius + diagonal) * math.sqrt(inverse)
         for i in range(left, right + 1):
             ex0 = frame[0] + i * side_x - x0
+            _reached(
+                maxima[i],
+                near,
+                bottom,
+                top,
+                ex0 + reach_x,
+                frame[1] + reach_y - y0,
+                side_y,
+                dx,
+                dy,
+                dz,
+                z0,
+                inverse,
+                window,
+                diagonal,
+                underside,
+                tool,
+            )
             for j in range(bottom, top + 1):
-                old = maxima[i, j]
-                if old <= underside or (old <= z0 and old <= z0 + dz):
+                if not near[j]:
                     continue
                 ey0 = frame[1] + j * side_y - y0
-                ex, ey = ex0 + reach_x, ey0 + reach_y
-                middle = (ex * dx + ey * dy) * inverse
-                t = min(max(middle, 0.0), 1.0)
-                away2 = (ex - t * dx) ** 2 + (ey - t * dy) ** 2
-                if away2 > (radius + diagonal) ** 2:
-                    continue
-                lowest = z0
-                if square == 0.0:
-                    lowest += min(0.0, dz)
-                elif dz > 0.0:
-                    lowest += dz * min(max(middle - window, 0.0), 1.0)
-                else:
-                    lowest += dz * min(max(middle + window, 0.0), 1.0)
-                near = max(0.0, math.sqrt(away2) - diagonal)
-                if lowest + _profile(tool, min(near, radius)) >= old:
-                    continue
-                block = heights[i * BLOCK : (i + 1) * BLOCK, j * BLOCK : (j + 1) * BLOCK]
+                i0, i1 = i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])
+                j0, j1 = j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])
                 largest[:] = -math.inf
                 if ball:
                     _ball_block(
-                        block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0 + radius, radius, underside, largest
+                        heights,
+                        i0,
+                        i1,
+                        j0,
+                        j1,
+                        ex0,
+                        ey0,
+                        frame[2],
+                        frame[3],
+                        dx,
+                        dy,
+                        dz,
+                        z0 + radius,
+                        radius,
+                        underside,
+                        largest,
                     )
                 elif flat:
-                    _flat_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, radius, underside, largest)
+                    _flat_block(
+                        heights,
+                        i0,
+                        i1,
+                        j0,
+                        j1,
+                        ex0,
+                        ey0,
+                        frame[2],
+                        frame[3],
+                        dx,
+                        dy,
+                        dz,
+                        z0,
+                        radius,
+                        underside,
+                        largest,
+                    )
                 else:
-                    _round_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, underside, largest)
+                    _round_block(
+                        heights, i0, i1, j0, j1, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, underside, largest
+                    )
                 maxima[i, j] = largest.max()
 
 
