@@ -34,6 +34,18 @@ def _profile(tool: FloatArray, rho: float) -> float:
 
 
 @njit(cache=True, nogil=True)
+def _lean(tool: FloatArray, rho: float) -> float:
+    """Slope of the meridian at a distance from the axis, up to the radius."""
+    if rho <= tool[0]:
+        return 0.0
+    if rho < tool[3]:
+        d = rho - tool[0]
+        rest = tool[1] * tool[1] - d * d
+        return d / math.sqrt(rest) if rest > 0.0 else math.inf
+    return 1.0 / tool[2] if tool[2] > 0.0 else math.inf
+
+
+@njit(cache=True, nogil=True)
 def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> float:
     """S in [0, limit] with the largest slope s - h(sqrt(q q + s s)), slope >= 0 and h the convex meridian.
 
@@ -47,30 +59,35 @@ def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> fl
         end = math.sqrt(arc * arc - q * q)
         wall = math.inf if tangent == 0.0 else 1.0 / tangent
         if wall * end / arc >= slope:
-            low = math.asin(min(1.0, max(0.0, (q - disc) / corner)))
-            high = 0.5 * math.pi - math.atan(tangent)
-            kappa = 0.5 * (low + high)
-            for _ in range(60):
-                sine, cosine = math.sin(kappa), math.cos(kappa)
-                rho = disc + corner * sine
-                along = math.sqrt(max(0.0, rho * rho - q * q))
-                value = sine * along - slope * rho * cosine
+            # with t = tan(kappa): t s = slope rho, rho = disc + corner t / sqrt(1 + t t), s = sqrt(rho rho - q q)
+            sine = max(0.0, (q - disc) / corner)
+            low, high = slope, wall
+            if sine > 0.0:
+                low = max(slope, sine / math.sqrt(max(1e-300, 1.0 - sine * sine)))
+            t = low * (1.0 + 1e-3) if sine > 0.0 else low
+            s = 0.0
+            for _ in range(80):
+                root = math.sqrt(1.0 + t * t)
+                rho = disc + corner * t / root
+                s = math.sqrt(max(0.0, rho * rho - q * q))
+                value = t * s - slope * rho
                 if value > 0.0:
-                    high = kappa
+                    high = min(high, t)
                 else:
-                    low = kappa
-                turn = corner * cosine
-                rise = cosine * along + slope * (rho * sine - turn * cosine)
-                if along > 0.0:
-                    rise += sine * rho * turn / along
-                following = kappa - value / rise if rise > 0.0 and along > 0.0 else -1.0
-                if not low < following < high:
-                    following = 0.5 * (low + high)
-                done = abs(following - kappa) < 1e-13
-                kappa = following
+                    low = max(low, t)
+                following = -1.0
+                if s > 0.0:
+                    turn = corner / (root * root * root)
+                    rise = s + t * rho * turn / s - slope * turn
+                    if rise > 0.0:
+                        following = t - value / rise
+                if not low <= following <= high:
+                    following = 0.5 * (low + high) if high < math.inf else 2.0 * low
+                done = abs(following - t) <= 1e-9 * t
+                t = following
                 if done:
                     break
-            rho = disc + corner * math.sin(kappa)
+            rho = disc + corner * t / math.sqrt(1.0 + t * t)
             return min(limit, math.sqrt(max(0.0, rho * rho - q * q)))
         flat = end
     if tangent > 0.0:
@@ -222,8 +239,17 @@ def _round_block(
                 continue
             s = nearest
             if dz != 0.0:
-                s = _resting_place(tool, abs(slope), q, root)
-                s = min(max(-s if slope > 0.0 else s, low), high)
+                # the height along the line is convex: on a short line it most often falls or rises all the way
+                rho = math.sqrt(q * q + low * low)
+                if rho > 0.0 and slope + _lean(tool, rho) * low / rho >= 0.0:
+                    s = low
+                else:
+                    rho = math.sqrt(q * q + high * high)
+                    if rho > 0.0 and slope + _lean(tool, rho) * high / rho <= 0.0:
+                        s = high
+                    else:
+                        s = _resting_place(tool, abs(slope), q, root)
+                        s = min(max(-s if slope > 0.0 else s, low), high)
             z = tip + (foot + s) * slope + _profile(tool, min(radius, math.sqrt(q * q + s * s)))
             if z < old:
                 heights[i, j] = z

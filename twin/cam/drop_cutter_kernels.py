@@ -268,10 +268,9 @@ def _largest_share(high: float, least: float, most: float, one: float) -> float:
     """Largest x / sqrt(one + x x + y y) with x <= high and y in [least, most]."""
     if high >= 1e6:
         return 1.0
+    across = max(abs(least), abs(most))
     if high > 0.0:
         across = 0.0 if least <= 0.0 <= most else min(abs(least), abs(most))
-    else:
-        across = max(abs(least), abs(most))
     root = math.sqrt(one + high * high + across * across)
     return high / root if root > 0.0 else 1.0
 
@@ -326,30 +325,35 @@ def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> fl
         end = math.sqrt(arc * arc - q * q)
         wall = math.inf if tangent == 0.0 else 1.0 / tangent
         if wall * end / arc >= slope:
-            low = math.asin(min(1.0, max(0.0, (q - disc) / corner)))
-            high = 0.5 * math.pi - math.atan(tangent)
-            kappa = 0.5 * (low + high)
-            for _ in range(60):
-                sine, cosine = math.sin(kappa), math.cos(kappa)
-                rho = disc + corner * sine
-                along = math.sqrt(max(0.0, rho * rho - q * q))
-                value = sine * along - slope * rho * cosine
+            # with t = tan(kappa): t s = slope rho, rho = disc + corner t / sqrt(1 + t t), s = sqrt(rho rho - q q)
+            sine = max(0.0, (q - disc) / corner)
+            low, high = slope, wall
+            if sine > 0.0:
+                low = max(slope, sine / math.sqrt(max(1e-300, 1.0 - sine * sine)))
+            t = low * (1.0 + 1e-3) if sine > 0.0 else low
+            s = 0.0
+            for _ in range(80):
+                root = math.sqrt(1.0 + t * t)
+                rho = disc + corner * t / root
+                s = math.sqrt(max(0.0, rho * rho - q * q))
+                value = t * s - slope * rho
                 if value > 0.0:
-                    high = kappa
+                    high = min(high, t)
                 else:
-                    low = kappa
-                turn = corner * cosine
-                rise = cosine * along + slope * (rho * sine - turn * cosine)
-                if along > 0.0:
-                    rise += sine * rho * turn / along
-                following = kappa - value / rise if rise > 0.0 and along > 0.0 else -1.0
-                if not low < following < high:
-                    following = 0.5 * (low + high)
-                done = abs(following - kappa) < 1e-13
-                kappa = following
+                    low = max(low, t)
+                following = -1.0
+                if s > 0.0:
+                    turn = corner / (root * root * root)
+                    rise = s + t * rho * turn / s - slope * turn
+                    if rise > 0.0:
+                        following = t - value / rise
+                if not low <= following <= high:
+                    following = 0.5 * (low + high) if high < math.inf else 2.0 * low
+                done = abs(following - t) <= 1e-9 * t
+                t = following
                 if done:
                     break
-            rho = disc + corner * math.sin(kappa)
+            rho = disc + corner * t / math.sqrt(1.0 + t * t)
             return min(limit, math.sqrt(max(0.0, rho * rho - q * q)))
         flat = end
     if tangent > 0.0:
@@ -361,8 +365,13 @@ def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> fl
 
 
 @njit(cache=True, nogil=True)
-def _tip_on_edge(tool: FloatArray, ball: bool, edge: FloatArray, x: float, y: float) -> tuple[float, float]:
-    """Height of the tip of a tool resting on a closed edge, and where it touches, 0 to 1; -inf out of reach."""
+def _tip_on_edge(
+    tool: FloatArray, ball: bool, edge: FloatArray, x: float, y: float, best: float
+) -> tuple[float, float]:
+    """Height of the tip of a tool resting on a closed edge, and where it touches, 0 to 1.
+
+    -inf out of reach, or where the height cannot be above ``best``.
+    """
     ex, ey = x - edge[0], y - edge[1]
     q = abs(ex * edge[4] - ey * edge[3])
     rest = tool[6] * tool[6] - q * q
@@ -378,6 +387,9 @@ def _tip_on_edge(tool: FloatArray, ball: bool, edge: FloatArray, x: float, y: fl
         part = min(max((foot + s) / edge[5], 0.0), 1.0)
         return edge[2] + part * edge[6] + math.sqrt(max(0.0, rest - s * s)) - tool[6], part
     slope = edge[6] / edge[5]
+    part = min(max((foot + (high if slope > 0.0 else low)) / edge[5], 0.0), 1.0)
+    if edge[2] + part * edge[6] - _profile(tool, min(tool[6], q)) <= best:
+        return -math.inf, 0.0
     s = _resting_place(tool, abs(slope), q, root)
     s = min(max(s if slope >= 0.0 else -s, low), high)
     part = min(max((foot + s) / edge[5], 0.0), 1.0)
@@ -427,7 +439,7 @@ def drop(
                 elif n < face_count + edge_count:
                     if edges[n - face_count, 8] <= best:
                         continue
-                    z, _ = _tip_on_edge(tool, ball, edges[n - face_count], x, y)
+                    z, _ = _tip_on_edge(tool, ball, edges[n - face_count], x, y, best)
                 else:
                     v = vertices[n - face_count - edge_count]
                     if v[2] <= best:
@@ -468,7 +480,7 @@ def contacts(
                 places[i, k] = (1.0 - u - w) * vertices[a, k] + u * vertices[b, k] + w * vertices[c, k]
         elif n < face_count + edge_count:
             edge = edges[n - face_count]
-            _, part = _tip_on_edge(tool, ball, edge, points[i, 0], points[i, 1])
+            _, part = _tip_on_edge(tool, ball, edge, points[i, 0], points[i, 1], -math.inf)
             places[i, 0] = edge[0] + part * edge[5] * edge[3]
             places[i, 1] = edge[1] + part * edge[5] * edge[4]
             places[i, 2] = edge[2] + part * edge[6]

@@ -11,6 +11,7 @@ from twin.arrays import FloatArray
 from twin.cam import surface_kernels as kernels
 from twin.cam.threads import in_parts
 from twin.errors import MeshError
+from twin.geometry.slicing_kernels import weld
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,10 +61,9 @@ def surface_of(corners_mm: ArrayLike, *, threads: int | None = None) -> Surface:
     if len(bad):
         raise MeshError(f"surface: triangle {bad[0] + 1} of {len(corners)} has a corner that is no finite number")
     points = corners.reshape(-1, 3)
-    ids = np.empty(len(points), dtype=np.int64)
-    vertices = np.empty_like(points)
-    count = kernels.weld(points, points.view(np.int64), ids, vertices)
-    return surface_of_mesh(vertices[:count], ids.reshape(-1, 3), threads=threads)
+    ids, first = np.empty((2, len(points)), dtype=np.int64)
+    count = weld(points.view(np.int64), ids, first)
+    return surface_of_mesh(points[first[:count]], ids.reshape(-1, 3), threads=threads)
 
 
 def surface_of_mesh(vertices_mm: FloatArray, triangles: NDArray[np.int64], *, threads: int | None = None) -> Surface:

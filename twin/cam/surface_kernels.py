@@ -25,51 +25,6 @@ _STEEPEST = 1e6
 
 
 @njit(cache=True, nogil=True)
-def _mixed(bits: int, h: int) -> int:
-    """One step of a shift-and-xor hash; no product, for products overflow loudly without the compiler."""
-    h ^= bits
-    h ^= (h << 13) & 0x7FFFFFFFFFFFFFFF
-    h ^= (h >> 7) & 0x01FFFFFFFFFFFFFF
-    h ^= (h << 17) & 0x7FFFFFFFFFFFFFFF
-    return h
-
-
-@njit(cache=True, nogil=True)
-def weld(corners: FloatArray, bits: NDArray[np.int64], ids: NDArray[np.int64], vertices: FloatArray) -> int:
-    """Number equal corners alike.
-
-    Args:
-        corners, bits: shape (k, 3), the coordinates (no negative zeros) and the same as integers.
-        ids: shape (k,), filled with vertex numbers in order of first appearance.
-        vertices: shape (k, 3), filled with the vertices.
-
-    Returns:
-        how many vertices there are.
-    """
-    size = 1024
-    while size < 2 * len(corners):
-        size *= 2
-    table = np.full(size, -1, dtype=np.int64)
-    count = 0
-    for i in range(len(corners)):
-        h = _mixed(bits[i, 2], _mixed(bits[i, 1], _mixed(bits[i, 0], 0)))
-        place = (h ^ (h >> 31)) & (size - 1)
-        while True:
-            v = table[place]
-            if v < 0:
-                table[place] = count
-                vertices[count, 0], vertices[count, 1], vertices[count, 2] = corners[i, 0], corners[i, 1], corners[i, 2]
-                ids[i] = count
-                count += 1
-                break
-            if vertices[v, 0] == corners[i, 0] and vertices[v, 1] == corners[i, 1] and vertices[v, 2] == corners[i, 2]:
-                ids[i] = v
-                break
-            place = (place + 1) & (size - 1)
-    return count
-
-
-@njit(cache=True, nogil=True)
 def edge_runs(triangles: NDArray[np.int64], vertices: int, order: NDArray[np.int64], begins: NDArray[np.int64]) -> int:
     """Group the sides of triangles by the edge they lie on.
 
