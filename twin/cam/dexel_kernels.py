@@ -118,6 +118,7 @@ def _ball_block(
     dz: float,
     centre: float,
     radius: float,
+    bottom: float,
     largest: FloatArray,
 ) -> None:
     """Cut one block by a ball on a line; e is the first dexel seen from the start, ``centre`` the ball's start height.
@@ -147,7 +148,7 @@ def _ball_block(
             last = min(1.0, middle + root * root_inverse)
             t = min(max(middle - lead * root, first), last)
             off = t - middle
-            z = centre + dz * t - math.sqrt(max(0.0, inside - square * off * off))
+            z = max(bottom, centre + dz * t - math.sqrt(max(0.0, inside - square * off * off)))
             old = heights[i, j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
             heights[i, j] = new
@@ -166,6 +167,7 @@ def _flat_block(
     dz: float,
     tip: float,
     radius: float,
+    bottom: float,
     largest: FloatArray,
 ) -> None:
     """Cut one block by a flat tool on a line: the lower end of the time in which its disc covers the dexel."""
@@ -186,7 +188,7 @@ def _flat_block(
             middle = (ex * dx + ey * dy) * inverse
             first = max(0.0, middle - half)
             last = min(1.0, middle + half)
-            z = tip + dz * (first if dz > 0.0 else last)
+            z = max(bottom, tip + dz * (first if dz > 0.0 else last))
             old = heights[i, j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
             heights[i, j] = new
@@ -205,6 +207,7 @@ def _round_block(
     dz: float,
     tip: float,
     tool: FloatArray,
+    bottom: float,
     largest: FloatArray,
 ) -> None:
     """Cut one block by any tool on a line; the place along it is searched only where the sweep can be low enough."""
@@ -220,7 +223,7 @@ def _round_block(
             if square == 0.0:
                 away = math.sqrt(ex * ex + ey * ey)
                 if away <= radius:
-                    heights[i, j] = min(old, tip + min(0.0, dz) + _profile(tool, away))
+                    heights[i, j] = min(old, max(bottom, tip + min(0.0, dz) + _profile(tool, away)))
                 continue
             q = abs(ex * dy - ey * dx) / length
             rest = radius * radius - q * q
@@ -252,7 +255,7 @@ def _round_block(
                         s = min(max(-s if slope > 0.0 else s, low), high)
             z = tip + (foot + s) * slope + _profile(tool, min(radius, math.sqrt(q * q + s * s)))
             if z < old:
-                heights[i, j] = z
+                heights[i, j] = max(bottom, z)
 
 
 @njit(cache=True, nogil=True)
@@ -260,6 +263,7 @@ def cut_lines(
     heights: FloatArray,
     maxima: FloatArray,
     frame: FloatArray,
+    underside: float,
     tool: FloatArray,
     starts: FloatArray,
     ends: FloatArray,
@@ -272,6 +276,7 @@ def cut_lines(
         heights: shape (nx, ny), in place.
         maxima: shape (blocks along x, blocks along y), largest height of each block, kept.
         frame: x and y of the first dexel, pitch along x and y.
+        underside: height that no dexel goes below.
         starts, ends: shape (k, 3), tool tip.
     """
     radius = tool[6]
@@ -295,7 +300,7 @@ def cut_lines(
             ex0 = frame[0] + i * side_x - x0
             for j in range(bottom, top + 1):
                 old = maxima[i, j]
-                if old <= z0 and old <= z0 + dz:
+                if old <= underside or (old <= z0 and old <= z0 + dz):
                     continue
                 ey0 = frame[1] + j * side_y - y0
                 ex, ey = ex0 + reach_x, ey0 + reach_y
@@ -317,11 +322,13 @@ def cut_lines(
                 block = heights[i * BLOCK : (i + 1) * BLOCK, j * BLOCK : (j + 1) * BLOCK]
                 largest[:] = -math.inf
                 if ball:
-                    _ball_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0 + radius, radius, largest)
+                    _ball_block(
+                        block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0 + radius, radius, underside, largest
+                    )
                 elif flat:
-                    _flat_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, radius, largest)
+                    _flat_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, radius, underside, largest)
                 else:
-                    _round_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, largest)
+                    _round_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, underside, largest)
                 maxima[i, j] = largest.max()
 
 
@@ -330,6 +337,7 @@ def cut_arcs(
     heights: FloatArray,
     maxima: FloatArray,
     frame: FloatArray,
+    underside: float,
     tool: FloatArray,
     arcs: FloatArray,
     first_band: int,
@@ -356,7 +364,7 @@ def cut_arcs(
         for i in range(left, right + 1):
             for j in range(bottom, top + 1):
                 old = maxima[i, j]
-                if old <= z0:
+                if old <= underside or old <= z0:
                     continue
                 x, y = frame[0] + i * side_x + reach_x, frame[1] + j * side_y + reach_y
                 near = max(0.0, _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7]) - diagonal)
@@ -368,7 +376,7 @@ def cut_arcs(
                         x, y = frame[0] + a * frame[2], frame[1] + b * frame[3]
                         off = _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7])
                         if off <= radius:
-                            heights[a, b] = min(heights[a, b], z0 + _profile(tool, off))
+                            heights[a, b] = min(heights[a, b], max(underside, z0 + _profile(tool, off)))
                         largest = max(largest, heights[a, b])
                 maxima[i, j] = largest
 
@@ -416,24 +424,26 @@ def rest_heights(
     radius = tool[6]
     side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
     wide_x, wide_y = (BLOCK - 1) * frame[2], (BLOCK - 1) * frame[3]
+    # the dexel that held the tool at the last point most often nearly holds it at the next
+    last_a, last_b = 0, 0
     for k in range(first, last):
         px, py = points[k, 0], points[k, 1]
         best = -math.inf
-        home_x = min(max(int(math.floor((px - frame[0]) / side_x)), 0), maxima.shape[0] - 1)
-        home_y = min(max(int(math.floor((py - frame[1]) / side_y)), 0), maxima.shape[1] - 1)
+        away = (frame[0] + last_a * frame[2] - px) ** 2 + (frame[1] + last_b * frame[3] - py) ** 2
+        if away <= radius * radius:
+            best = heights[last_a, last_b] - _profile(tool, math.sqrt(away))
         left = max(0, int(math.floor((px - radius - frame[0]) / side_x)))
         right = min(maxima.shape[0] - 1, int(math.floor((px + radius - frame[0]) / side_x)))
         bottom = max(0, int(math.floor((py - radius - frame[1]) / side_y)))
         top = min(maxima.shape[1] - 1, int(math.floor((py + radius - frame[1]) / side_y)))
-        # the block below the tip first: it most often decides, and the others are left after one comparison
-        for at in range(-1, (right - left + 1) * (top - bottom + 1)):
-            i, j = home_x, home_y
-            if at >= 0:
-                i, j = left + at // (top - bottom + 1), bottom + at % (top - bottom + 1)
+        for at in range((right - left + 1) * (top - bottom + 1)):
+            i, j = left + at // (top - bottom + 1), bottom + at % (top - bottom + 1)
+            if maxima[i, j] <= best:
+                continue
             gap_x = max(0.0, frame[0] + i * side_x - px, px - frame[0] - i * side_x - wide_x)
             gap_y = max(0.0, frame[1] + j * side_y - py, py - frame[1] - j * side_y - wide_y)
             near = gap_x * gap_x + gap_y * gap_y
-            if near > radius * radius or maxima[i, j] <= best:
+            if near > radius * radius:
                 continue
             if maxima[i, j] - _profile(tool, math.sqrt(near)) <= best:
                 continue
@@ -443,7 +453,9 @@ def rest_heights(
                         continue
                     away = (frame[0] + a * frame[2] - px) ** 2 + (frame[1] + b * frame[3] - py) ** 2
                     if away <= radius * radius:
-                        best = max(best, heights[a, b] - _profile(tool, math.sqrt(away)))
+                        tip = heights[a, b] - _profile(tool, math.sqrt(away))
+                        if tip > best:
+                            best, last_a, last_b = tip, a, b
         out[k] = best
 
 

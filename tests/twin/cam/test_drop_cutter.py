@@ -198,7 +198,7 @@ def test_larger_tools_never_stand_lower() -> None:
 
 def test_threads_do_not_change_a_bit() -> None:
     triangles = terrain(rough, 30)
-    points = np.random.default_rng(6).uniform(-2.0, 8.0, (3000, 2))
+    points = np.random.default_rng(6).uniform(-2.0, 8.0, (9000, 2))
     one, two = (DropCutter(triangles, "bull 3 r1", threads=n) for n in (1, 2))
     assert np.array_equal(one.drop(points), two.drop(points))
     assert np.array_equal(one.drop(points, threads=2), two.drop(points, threads=1))
