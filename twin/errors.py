@@ -42,3 +42,19 @@ class ReplayError(TwinError):
 
 class CollisionError(ReplayError):
     """A collision in a strict replay."""
+
+
+class MeasuredError(TwinError):
+    """A measured log that cannot be read, or does not say what is asked of it."""
+
+
+class CompareError(TwinError):
+    """A run and a log that cannot be compared."""
+
+
+class CutsError(JobError):
+    """A file of test cuts that cannot be used; ``problems`` holds every mistake found, one line each."""
+
+
+class IdentifyError(TwinError):
+    """Test cuts that no coefficients can be found from."""

@@ -40,10 +40,12 @@ class Container:
 
     Attributes:
         library: what the file's header says of its writer.
+        profile: kind of the file: a run, or a comparison of one.
     """
 
     put: Callable[[bytes], None]
     library: str
+    profile: str = schemas.PROFILE
     _offset: int = 0
     _crc: int = 0
     _schemas: dict[str, Schema] = field(default_factory=dict)
@@ -59,7 +61,7 @@ class Container:
 
     def start(self) -> None:
         """Write the magic and the header."""
-        self._write(MAGIC + to_bytes(Header(schemas.PROFILE, self.library)))
+        self._write(MAGIC + to_bytes(Header(self.profile, self.library)))
 
     @property
     def pending_bytes(self) -> int:

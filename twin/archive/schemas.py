@@ -14,6 +14,8 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, ti
 from google.protobuf.message import Message
 
 PROFILE = "twin"
+#: A comparison of a run with a measured log.
+COMPARISON_PROFILE = "twin-comparison"
 ENCODING = "protobuf"
 
 FORCE_TOPIC = "/force"
@@ -22,11 +24,13 @@ POSE_TOPIC = "/machine/tool"
 TOOL_SHAPE_TOPIC = "/machine/tool/shape"
 NC_TOPIC = "/nc"
 COLLISION_TOPIC = "/collision"
+COMPARISON_TOPIC = "/compare/force"
 #: Every patch of the workpiece has its own topic, ``/workpiece/<patch>``, so that a viewer replaces it alone.
 WORKPIECE_PREFIX = "/workpiece/"
 
 FORCE = "twin.CuttingForce"
 ENGAGEMENT = "twin.Engagement"
+COMPARISON = "twin.ComparedForce"
 TRANSFORM = "foxglove.FrameTransform"
 CLOUD = "foxglove.PointCloud"
 LOG = "foxglove.Log"
@@ -39,6 +43,7 @@ TOPICS: dict[str, str] = {
     TOOL_SHAPE_TOPIC: CLOUD,
     NC_TOPIC: LOG,
     COLLISION_TOPIC: LOG,
+    COMPARISON_TOPIC: COMPARISON,
 }
 
 WORKPIECE_FRAME = "workpiece"
@@ -60,6 +65,16 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         ("power_w", 7, "double"),
         ("nc_line", 8, "fixed32"),
         ("tool", 9, "fixed32"),
+    ),
+    COMPARISON: (
+        ("t_s", 1, "double"),
+        ("spindle_angle_rad", 2, "double"),
+        ("measured_x_n", 3, "double"),
+        ("measured_y_n", 4, "double"),
+        ("measured_z_n", 5, "double"),
+        ("simulated_x_n", 6, "double"),
+        ("simulated_y_n", 7, "double"),
+        ("simulated_z_n", 8, "double"),
     ),
     ENGAGEMENT: (
         ("step", 1, "uint64"),

@@ -39,7 +39,9 @@ def largest_ball_mm(
     low = _LEAST_PITCHES * float(part.slices.pitch_mm.max())
     high = 0.5 * float((part.slices.high_mm - part.slices.low_mm).min())
     if low >= high:
-        raise ToolError(f"slice pitch {low / _LEAST_PITCHES:g} mm; expected below {high / _LEAST_PITCHES:g} for a search")
+        raise ToolError(
+            f"slice pitch {low / _LEAST_PITCHES:g} mm; expected below {high / _LEAST_PITCHES:g} for a search"
+        )
 
     def finishes(radius: float) -> bool:
         reach = unmachinable(part, StructuringElement.ball(radius), thin_mm=thin_mm, threads=threads)

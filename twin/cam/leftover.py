@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -13,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from twin.arrays import FloatArray
 from twin.cam import leftover_kernels as kernels
 from twin.cam.sections import Sections
+from twin.geometry.pieces import Pieces
 from twin.geometry.shapes import Shapes
 from twin.workpiece.store import PLANE_AXES
 
@@ -63,33 +63,30 @@ def leftovers(
     Returns:
         The regions, the largest first.
     """
-    pieces, owners = shapely.get_parts(left, return_index=True)
-    width = 2.0 * shapely.area(pieces) / np.maximum(shapely.length(pieces), 1e-300)
-    wanted = (shapely.get_type_id(pieces) == 3) & (width > _WIDTH_PITCHES * pitch_mm)
-    pieces, owners = pieces[wanted], owners[wanted]
-    if len(pieces) == 0:
+    pieces = Pieces.of(left, _WIDTH_PITCHES * pitch_mm)
+    if len(pieces.shapes) == 0:
         return ()
-    points, of = _outline_points(pieces)
-    distance = _distances(points, planes_mm[owners[of]], sections)
-    labels = _connected(pieces, owners, pitch_mm)
+    points, of = pieces.outline_points(_MEASURED)
+    planes = planes_mm[pieces.planes]
+    distance = _distances(points, planes[of], sections)
+    labels = _connected(pieces, pitch_mm)
     found = []
     for label in range(labels.max() + 1):
         mine = np.flatnonzero(labels == label)
         places = np.flatnonzero(labels[of] == label)
         deepest = places[np.argmax(distance[places])]
         if distance[deepest] > thin_mm:
-            at = _in_space(points[deepest], planes_mm[owners[of[deepest]]], sections.axis)
-            shape = pieces[mine], planes_mm[owners[mine]]
-            found.append(_leftover(*shape, pitch_mm, sections.axis, float(distance[deepest]), at))
+            at = _in_space(points[deepest], planes[of[deepest]], sections.axis)
+            part = pieces.some(mine)
+            found.append(_leftover(part, planes[mine], pitch_mm, sections.axis, float(distance[deepest]), at))
     return tuple(sorted(found, key=lambda r: -r.volume_mm3))
 
 
 def _leftover(
-    pieces: Shapes, planes_mm: FloatArray, pitch_mm: float, axis: int, thickness_mm: float, deepest_mm: FloatArray
+    pieces: Pieces, planes_mm: FloatArray, pitch_mm: float, axis: int, thickness_mm: float, deepest_mm: FloatArray
 ) -> Leftover:
-    areas, bounds = shapely.area(pieces), shapely.bounds(pieces)
-    middles = shapely.get_coordinates(shapely.centroid(pieces))
-    centroid = _in_space(areas @ middles / areas.sum(), float(areas @ planes_mm / areas.sum()), axis)
+    areas, bounds = pieces.areas_mm2, pieces.bounds_mm
+    centroid = _in_space(areas @ pieces.centroids_mm / areas.sum(), float(areas @ planes_mm / areas.sum()), axis)
     half = 0.5 * pitch_mm
     return Leftover(
         volume_mm3=float(areas.sum()) * pitch_mm,
@@ -100,7 +97,7 @@ def _leftover(
         centroid_mm=centroid,
         axis=axis,
         planes_mm=planes_mm,
-        pieces=pieces,
+        pieces=pieces.shapes,
     )
 
 
@@ -110,16 +107,6 @@ def _in_space(point: FloatArray, plane: float, axis: int) -> FloatArray:
     space[list(PLANE_AXES[axis])] = point
     space[axis] = plane
     return space
-
-
-def _outline_points(pieces: Shapes) -> tuple[FloatArray, NDArray[np.int64]]:
-    """Places on the outlines of pieces, and the piece of each."""
-    points, of = shapely.get_coordinates(pieces, return_index=True)
-    counts = np.bincount(of, minlength=len(pieces))
-    every = np.maximum(1, counts // _MEASURED)
-    place = np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
-    kept = place % every[of] == 0
-    return points[kept], of[kept].astype(np.int64)
 
 
 def _distances(points: FloatArray, planes_mm: FloatArray, sections: Sections) -> FloatArray:
@@ -140,11 +127,9 @@ def _distances(points: FloatArray, planes_mm: FloatArray, sections: Sections) ->
     return found
 
 
-def _connected(pieces: Shapes, owners: NDArray[np.int64], pitch_mm: float) -> NDArray[np.int64]:
+def _connected(pieces: Pieces, pitch_mm: float) -> NDArray[np.int64]:
     """Number of the region of each piece: pieces that overlap, or nearly so, on neighbouring planes belong together."""
-    tree = shapely.STRtree(pieces)
-    one, other = tree.query(pieces, predicate="dwithin", distance=_NEAR_PITCHES * pitch_mm)
-    near = np.abs(owners[one] - owners[other]) <= 1
-    graph = coo_array((np.ones(near.sum(), dtype=np.int8), (one[near], other[near])), shape=(len(pieces),) * 2)
+    pairs = pieces.near_pairs(_NEAR_PITCHES * pitch_mm)
+    graph = coo_array((np.ones(len(pairs[0]), dtype=np.int8), pairs), shape=(len(pieces.shapes),) * 2)
     _, labels = connected_components(graph, directed=False)
     return np.asarray(labels, dtype=np.int64)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-import shapely
 
 from twin.arrays import FloatArray
 from twin.cam.leftover import Leftover
-from twin.geometry.clip import DECIMALS
+from twin.geometry.pieces import prism_parts
+from twin.geometry.shapes import Shape
 from twin.workpiece.store import PLANE_AXES
 from twin.workpiece.to_mesh import SurfaceMesh
 
@@ -32,16 +32,9 @@ def leftover_mesh(regions: Iterable[Leftover], pitch_mm: float) -> SurfaceMesh:
     return SurfaceMesh(triangles.reshape(-1, 3), normals, np.arange(3 * len(triangles)).reshape(-1, 3))
 
 
-def _prism(piece: shapely.Geometry, plane: float, half_mm: float, axis: int) -> FloatArray:
+def _prism(piece: Shape, plane: float, half_mm: float, axis: int) -> FloatArray:
     """Triangles of one piece between two planes, counter-clockwise seen from outside, shape (n, 3, 3)."""
-    rounded = shapely.orient_polygons(shapely.set_precision(piece, 10.0**-DECIMALS))
-    parts = [p for p in shapely.get_parts(rounded) if shapely.get_type_id(p) == 3]
-    if not parts:
-        return np.empty((0, 3, 3))
-    flat = shapely.get_parts(shapely.constrained_delaunay_triangles(shapely.multipolygons(parts)))
-    caps = shapely.get_coordinates(shapely.orient_polygons(flat)).reshape(-1, 4, 2)[:, :3]
-    rings = [shapely.get_coordinates(r) for p in parts for r in (p.exterior, *p.interiors)]
-    edges = np.concatenate([np.stack((r[:-1], r[1:]), axis=1) for r in rings])
+    caps, edges = prism_parts(piece)
     low, high = plane - half_mm, plane + half_mm
     a, b = edges[:, 0], edges[:, 1]
     below, above = _at(a, low, axis), _at(a, high, axis)

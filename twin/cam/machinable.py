@@ -11,15 +11,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 from twin.arrays import FloatArray
 from twin.cam.element import StructuringElement
 from twin.cam.leftover import Leftover, leftovers
-from twin.cam.offset import CHORD_PITCHES, arc_segments, convolved
+from twin.cam.offset import CHORD_PITCHES, away, frame_boxes, towards
 from twin.cam.sections import Sections, SlicedPart, face_levels
-from twin.geometry.shapes import Shapes, to_shapes
-from twin.workpiece.store import PLANE_AXES
+from twin.geometry.convolution import arc_segments, convolved
+from twin.geometry.shapes import Shapes, minus, to_shapes
 
 #: How far above a face a tool that stands on it is taken to be, mm: far above rounding, far below any tolerance.
 _ON_MM = 1e-5
@@ -82,7 +81,7 @@ def unmachinable(
     planes = part.slices.positions_mm(axis)
     closed = _closed(part, sections, planes, element, threads)
     own = to_shapes(part.slices.regions[axis])
-    left = shapely.difference(closed, own)
+    left = minus(closed, own)
     found = leftovers(left, planes, pitch, sections, least)
     return Reach(element=element, axis=axis, pitch_mm=pitch, thin_mm=least, leftovers=found)
 
@@ -101,18 +100,15 @@ def _closed(
 ) -> Shapes:
     """Sections of what stays: everything that no position of the tool reaches, within the part's box."""
     radius, pitch = element.radius_mm, float(part.slices.pitch_mm[sections.axis])
-    u, v = PLANE_AXES[sections.axis]
-    low, high = part.slices.low_mm, part.slices.high_mm
-    outer = shapely.box(*(low[[u, v]] - 3.0 * radius), *(high[[u, v]] + 3.0 * radius))
-    box = shapely.box(low[u], low[v], high[u], high[v])
+    outer, box = frame_boxes(part.slices, sections.axis, element)
     segments = arc_segments(radius, CHORD_PITCHES * pitch)
     places = _tool_places(part, sections.axis, planes, element)
     inflated = convolved(
-        to_shapes(sections.regions), sections.positions_mm, places, _towards(element, sections.axis), segments, threads
+        to_shapes(sections.regions), sections.positions_mm, places, towards(element, sections.axis), segments, threads
     )
-    free = shapely.difference(outer, inflated)
-    swept = convolved(free, places, planes, _away(element, sections.axis), segments, threads)
-    return np.asarray(shapely.difference(box, swept), dtype=object)
+    free = minus(outer, inflated)
+    swept = convolved(free, places, planes, away(element, sections.axis), segments, threads)
+    return minus(box, swept)
 
 
 def _tool_places(part: SlicedPart, axis: int, planes: FloatArray, element: StructuringElement) -> FloatArray:
@@ -126,13 +122,3 @@ def _tool_places(part: SlicedPart, axis: int, planes: FloatArray, element: Struc
     if element.centred:
         on.append(low - element.drop_mm - _ON_MM)
     return np.unique(np.concatenate((even, *on)))
-
-
-def _towards(element: StructuringElement, axis: int):  # type: ignore[no-untyped-def]
-    return element.z_radii_mm if axis == 2 else element.ball_radii_mm
-
-
-def _away(element: StructuringElement, axis: int):  # type: ignore[no-untyped-def]
-    if axis != 2:
-        return element.ball_radii_mm
-    return lambda above: element.z_radii_mm(-above)

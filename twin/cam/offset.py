@@ -4,32 +4,29 @@ The section of an inflated part on a plane is the union of all neighbouring sect
 the structuring element has at its distance: sqrt(r^2 - d^2) for a ball. Shrinking is inflating what is not there.
 
 Conventions. With `StructuringElement.ball` the result is where the ball's centre may not be; with
-`StructuringElement.tool` where the tool's tip may not be (tools reach up without end). Rounding arcs are inscribed with
-chords no further than ``chord_mm`` inside; sections between slices are left out, so an inflated part is never too large,
-and a shrunk one never too small. How much it may lack is told by `bound_mm`.
+`StructuringElement.tool` where the tool's tip may not be (tools reach up without end). Rounding arcs are inscribed, with
+chords no further than ``chord_mm`` inside, and what lies between slices is left out: an inflated part is never too
+large, and a shrunk one never too small. How much it may lack is told by `bound_mm`.
 """
 
 from __future__ import annotations
 
 import math
-import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
 
 import numpy as np
-import shapely
 
 from twin.arrays import FloatArray, frozen
 from twin.cam.element import StructuringElement
-from twin.cam.sections import SlicedPart, Sections
+from twin.cam.sections import Sections, SlicedPart, outside_sections
+from twin.geometry.convolution import Radii, arc_segments, convolved
 from twin.geometry.region import Region
-from twin.geometry.shapes import Shapes, to_region, to_shapes
+from twin.geometry.shapes import Shape, Shapes, box_shape, grown_each, minus, to_region, to_shapes
 from twin.workpiece.stock import SliceSet
+from twin.workpiece.store import PLANE_AXES
 
 #: Chords of rounding arcs stand this part of a slice pitch inside of them.
 CHORD_PITCHES = 0.005
-
-Radii = Callable[[FloatArray], FloatArray]
 
 
 def inflate(
@@ -69,6 +66,22 @@ def inflate(
     return frame.slice_set(families)
 
 
+def bound_mm(element: StructuringElement, pitch_mm: float, slope_rad: float = 0.5 * math.pi) -> float:
+    """How far an inflated part may stand inside of the exact one, for what lies between its slices.
+
+    On a flat, or outwards round, place whose surface makes an angle with the planes of the slices, the nearest slices
+    are at most half a pitch away, p / (2 sin a) along the surface: the element's curvature loses p^2 / (8 r sin^2 a)
+    there, and the part's own as much again where its radius is not smaller. Nowhere is more lost than half a pitch, but
+    for faces that lie across the slices of a part without `SlicedPart.faces`, which are known to one pitch.
+
+    Args:
+        slope_rad: angle between the surface and the planes of the slices; 90 degrees where not told.
+    """
+    radius = element.corner_mm if element.corner_mm > 0.0 else element.radius_mm
+    sine = math.sin(slope_rad)
+    return min(0.5 * pitch_mm, pitch_mm**2 / (4.0 * radius * sine * sine)) if sine > 0.0 else 0.5 * pitch_mm
+
+
 def inflated_planes(
     sections: Sections,
     element: StructuringElement,
@@ -89,10 +102,78 @@ def _inflated_shapes(
     sections: Sections, element: StructuringElement, planes_mm: FloatArray, chord_mm: float, threads: int | None
 ) -> Shapes:
     shapes = to_shapes(sections.regions)
-    radii = element.z_radii_mm if sections.axis == 2 else element.ball_radii_mm
+    radii = towards(element, sections.axis)
     return convolved(
         shapes, sections.positions_mm, planes_mm, radii, arc_segments(element.radius_mm, chord_mm), threads
     )
+
+
+def shrink(
+    part: SlicedPart | SliceSet,
+    element: StructuringElement,
+    *,
+    axes: Sequence[int] = (0, 1, 2),
+    chord_mm: float | None = None,
+    threads: int | None = None,
+) -> SliceSet:
+    """Shrink a part: what is around it is inflated, and the rest is left (the tri-slice paper's intersection).
+
+    Shrinking an inflated part by the same element closes it: gaps that the element does not fit into stay filled.
+
+    Args:
+        part: as for `inflate`.
+        element: for a tool the result is where every place of the tool's body, upside up, is inside the inflated part.
+        axes: directions wanted; the others have no planes in the result.
+        chord_mm: how far chords of rounding arcs may stand inside.
+        threads: threads to work with, all cores if not given; results do not depend on it.
+
+    Returns:
+        Slices on the same planes.
+    """
+    slices = part.slices if isinstance(part, SlicedPart) else part
+    chord = CHORD_PITCHES * float(slices.pitch_mm.min()) if chord_mm is None else chord_mm
+    segments = arc_segments(element.radius_mm, chord)
+    families: list[tuple[Region, ...]] = [(), (), ()]
+    for axis in axes:
+        sections = outside_sections(part.mesh, axis) if isinstance(part, SlicedPart) else None
+        own = Sections.of(slices, axis)
+        wide = _with_nothing_beyond(
+            own if sections is None else own.joined(sections), element, float(slices.pitch_mm[axis])
+        )
+        outer, box = frame_boxes(slices, axis, element)
+        free = minus(outer, to_shapes(wide.regions))
+        swept = convolved(free, wide.positions_mm, own.positions_mm, away(element, axis), segments, threads)
+        families[axis] = tuple(to_region(s) for s in minus(box, swept))
+    return SliceSet(low_mm=slices.low_mm, high_mm=slices.high_mm, pitch_mm=slices.pitch_mm, regions=tuple(families))
+
+
+def _with_nothing_beyond(sections: Sections, element: StructuringElement, pitch_mm: float) -> Sections:
+    """Sections with empty ones on either side, as far as the element reaches."""
+    reach = pitch_mm * np.arange(1, math.ceil(2.0 * element.radius_mm / pitch_mm) + 2)
+    ends = sections.positions_mm[[0, -1]]
+    around = np.concatenate((ends[0] - reach, ends[1] + reach))
+    order = np.sort(around)
+    return sections.joined(Sections(axis=sections.axis, positions_mm=order, regions=(Region(),) * len(order)))
+
+
+def frame_boxes(slices: SliceSet, axis: int, element: StructuringElement) -> tuple[Shape, Shape]:
+    """Rectangle that holds all there may be around a part on a plane, and the part's own."""
+    u, v = PLANE_AXES[axis]
+    low, high, far = slices.low_mm, slices.high_mm, 3.0 * element.radius_mm
+    return (
+        box_shape(low[u] - far, low[v] - far, high[u] + far, high[v] + far),
+        box_shape(low[u], low[v], high[u], high[v]),
+    )
+
+
+def towards(element: StructuringElement, axis: int) -> Radii:
+    """Radii by which sections of a part are inflated, from their heights above a plane of the tool's reference point."""
+    return element.z_radii_mm if axis == 2 else element.ball_radii_mm
+
+
+def away(element: StructuringElement, axis: int) -> Radii:
+    """Radii of the tool's own sections on a plane, from the heights of its reference point above the plane."""
+    return (lambda above: element.z_radii_mm(-above)) if axis == 2 else element.ball_radii_mm
 
 
 def inflate_individually(slices: SliceSet, radius_mm: float, *, chord_mm: float | None = None) -> SliceSet:
@@ -105,64 +186,10 @@ def inflate_individually(slices: SliceSet, radius_mm: float, *, chord_mm: float 
     frame = _Frame.around(slices, StructuringElement.ball(radius_mm))
     families = []
     for axis in range(3):
-        grown = shapely.buffer(to_shapes(slices.regions[axis]), radius_mm, quad_segs=segments)
+        grown = grown_each(to_shapes(slices.regions[axis]), radius_mm, segments)
         empty = (Region(),) * frame.more(axis)
         families.append(empty + tuple(to_region(s) for s in grown) + empty)
     return frame.slice_set(families)
-
-
-def arc_segments(radius_mm: float, chord_mm: float) -> int:
-    """Segments a quarter circle of this radius needs, so that no chord stands further inside of it than ``chord_mm``."""
-    half = math.acos(max(0.0, 1.0 - chord_mm / radius_mm))
-    return max(2, math.ceil(0.25 * math.pi / half))
-
-
-def convolved(
-    shapes: Shapes, positions_mm: FloatArray, planes_mm: FloatArray, radii: Radii, segments: int, threads: int | None
-) -> Shapes:
-    """Union, on every plane, of all sections inflated by the radius that belongs to their distance (eq. 1).
-
-    A section that lies inside of the next one, which is inflated by as much or more, is left out: that changes nothing.
-
-    Args:
-        shapes: sections at ``positions_mm``, which increase.
-        radii: from heights above a plane to radii, NaN out of reach.
-        segments: segments a quarter circle.
-    """
-    inside_next, inside_last = _nested(shapes)
-
-    def plane(at_mm: float) -> shapely.Geometry:
-        radius = radii(positions_mm - at_mm)
-        wanted = _undominated(radius, inside_next, inside_last) & ~shapely.is_empty(shapes)
-        grown = shapely.buffer(shapes[wanted], radius[wanted], quad_segs=segments)
-        return shapely.union_all(grown)
-
-    made = np.empty(len(planes_mm), dtype=object)
-    count = threads or os.cpu_count() or 1
-    if count == 1:
-        made[:] = [plane(float(p)) for p in planes_mm]
-    else:
-        with ThreadPoolExecutor(max_workers=count) as pool:
-            made[:] = list(pool.map(plane, planes_mm.tolist()))
-    return made
-
-
-def _nested(shapes: Shapes) -> tuple[np.ndarray, np.ndarray]:
-    """Whether each section lies inside of the next, and inside of the last one before it."""
-    shapely.prepare(shapes)
-    inside_next, inside_last = np.zeros(len(shapes), dtype=bool), np.zeros(len(shapes), dtype=bool)
-    same = np.array([a is b for a, b in zip(shapes[:-1], shapes[1:], strict=True)], dtype=bool)
-    inside_next[:-1] = same | shapely.covers(shapes[1:], shapes[:-1])
-    inside_last[1:] = same | shapely.covers(shapes[:-1], shapes[1:])
-    return inside_next, inside_last
-
-
-def _undominated(radius: FloatArray, inside_next: np.ndarray, inside_last: np.ndarray) -> np.ndarray:
-    """Sections within reach that no neighbour makes needless."""
-    keep = ~np.isnan(radius)
-    keep[:-1] &= ~(inside_next[:-1] & (radius[1:] > radius[:-1]))
-    keep[1:] &= ~(inside_last[1:] & (radius[:-1] >= radius[1:]))
-    return keep
 
 
 class _Frame:

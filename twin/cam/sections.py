@@ -54,8 +54,8 @@ class SlicedPart:
     Attributes:
         mesh: the solid that was cut.
         slices: evenly spaced sections in three directions.
-        faces: for every axis, sections just inside of the faces that lie across it. Even slices know such a face to half
-            a pitch only; with these it is known exactly.
+        faces: for every axis, sections just inside of the faces that lie across it. Even slices know such a face to
+            half a pitch only; with these it is known exactly.
     """
 
     mesh: Solid
@@ -86,8 +86,17 @@ def slice_part(part: Path | str | Solid, pitch_mm: float) -> SlicedPart:
 
 def face_sections(mesh: Solid, axis: int) -> Sections:
     """Sections at the faces that lie across an axis, cut just inside the material."""
+    return _beside_faces(mesh, axis, _INSIDE_MM)
+
+
+def outside_sections(mesh: Solid, axis: int) -> Sections:
+    """Sections at the same faces, cut just outside the material."""
+    return _beside_faces(mesh, axis, -_INSIDE_MM)
+
+
+def _beside_faces(mesh: Solid, axis: int, inwards_mm: float) -> Sections:
     low, high = face_levels(mesh, axis)
-    cuts = np.concatenate((low + _INSIDE_MM, high - _INSIDE_MM))
+    cuts = np.concatenate((low + inwards_mm, high - inwards_mm))
     positions = np.concatenate((low, high))
     order = np.argsort(cuts, kind="stable")
     u, v = PLANE_AXES[axis]

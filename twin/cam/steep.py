@@ -1,7 +1,7 @@
 """Level lines on steep surfaces, where rows in the plan would lie too far apart on the wall.
 
-Where the tip may go down to a height z is bounded by a line on which the exact height of the drop-cutter is z. Lines are
-traced on a grid, and each of their points is then moved onto the exact boundary by halving. Steepness is that of the
+Where the tip may go down to a height z is bounded by a line on which the exact height of the drop-cutter is z. Lines
+are traced on a grid, and each of their points is then moved onto the exact boundary by halving. Steepness is that of the
 surface that the tip moves on, whose normals are those of the contacts.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import contourpy
 import numpy as np
@@ -157,7 +158,7 @@ def _exact(
         points, owner = np.insert(points, where, found[sure], axis=0), np.insert(owner, where, owner[where - 1])
     turned = _turned(points, owner, heights, cutter, max(10.0 * tolerance, 0.05))
     bounds = np.searchsorted(owner, np.arange(len(lines) + 1)).tolist()
-    for number, (a, b) in enumerate(zip(bounds, bounds[1:], strict=False)):
+    for number, (a, b) in enumerate(pairwise(bounds)):
         line = points[a:b]
         line = line[np.concatenate(([True], np.any(np.diff(line, axis=0) != 0.0, axis=1)))]
         if len(line) > 2:

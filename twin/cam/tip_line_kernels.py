@@ -1,9 +1,9 @@
-"""How low a tool can go over a part's slices: upper envelope of profiles inflated by the tool's sections; compiled.
+"""How low a tool can go over a part's slices: upper envelope of profiles inflated by its sections; compiled.
 
-A profile is the upper boundary of one section, as segments and convex corners. Inflated by a convex section of the tool,
-a segment is moved by the point of the tool that touches it, and a corner becomes a piece of the tool's own outline, from
-the point that touches one side to the point that touches the other. The envelope of all pieces of all sections in reach
-is the inflated part's upper boundary (the tri-slice paper, eq. 1), known at evenly spaced places.
+A profile is the upper boundary of one section, as segments and convex corners. Inflated by a convex section of the
+tool, a segment is moved by the point of the tool that touches it, and a corner becomes a piece of the tool's own
+outline, from the point that touches one side to the point that touches the other. The envelope of all pieces of all
+sections in reach is the inflated part's upper boundary (the tri-slice paper, eq. 1), known at evenly spaced places.
 
 Heights of the tool's outline at a distance from its axis: 0 within the disc, then a corner arc.
 """
@@ -215,7 +215,7 @@ def _between(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
 def _reach(positions: FloatArray, plane: float, radius: float) -> tuple[int, int]:
     """First and one past the last section that a tool at a plane can touch."""
     first = np.searchsorted(positions, plane - radius, side="right")
-    return first, np.searchsorted(positions, plane + radius, side="left")
+    return int(first), int(np.searchsorted(positions, plane + radius, side="left"))
 
 
 @njit(cache=True, nogil=True)

@@ -1,9 +1,9 @@
 """How low a tool may go along straight lines over a part: the upper boundary of its inflated slices.
 
 For scanning paths only the upper boundary of an inflated part counts. On the plane of a line it is the envelope of all
-neighbouring profiles, each inflated by the tool's section at its distance (the tri-slice paper, eq. 1); it is computed
-without polygons, exactly along the line. Between slices, where heights change smoothly, their largest is interpolated by
-a parabola across three slices; at edges and walls it is not.
+neighbouring profiles, each inflated by the tool's section at its distance (the tri-slice paper, eq. 1). It is computed
+without polygons, exactly along the line. Between slices, where heights change smoothly, their largest is interpolated
+by a parabola across three slices; at edges and walls it is not.
 """
 
 from __future__ import annotations
@@ -51,8 +51,7 @@ class Places:
     @property
     def at_mm(self) -> FloatArray:
         """The places, shape (count,)."""
-        at: FloatArray = self.start_mm + self.step_mm * np.arange(self.count)
-        return at
+        return np.asarray(self.start_mm + self.step_mm * np.arange(self.count, dtype=np.float64))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -222,7 +221,8 @@ def _rough(heights: FloatArray, step_mm: float, chord_mm: float) -> NDArray[np.b
     """Cells whose chords may stand off by more than a tolerance, by the second differences at their ends."""
     slope = np.abs(np.diff(heights, axis=1)) / step_mm
     bend = np.zeros_like(heights)
-    bend[:, 1:-1] = np.abs(np.diff(heights, 2, axis=1)) / np.sqrt(1.0 + np.minimum(slope[:, 1:], slope[:, :-1]) ** 2)
+    least = np.minimum(slope[:, 1:], slope[:, :-1])
+    bend[:, 1:-1] = np.abs(np.diff(heights, 2, axis=1)) / np.sqrt(1.0 + least**2)
     return np.asarray(np.maximum(bend[:, 1:], bend[:, :-1]) > 8.0 * chord_mm)
 
 

@@ -6,7 +6,9 @@ from typing import Annotated
 
 import typer
 
+from twin.cli.compare import compare
 from twin.cli.export import export
+from twin.cli.identify import identify
 from twin.cli.info import info
 from twin.cli.machinable import machinable
 from twin.cli.mesh import mesh
@@ -28,7 +30,20 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (replay, view, info, export, mesh, machinable, paths, verify, mold, schema):
+for command in (
+    replay,
+    view,
+    info,
+    export,
+    compare,
+    identify,
+    mesh,
+    machinable,
+    paths,
+    verify,
+    mold,
+    schema,
+):
     app.command()(command)
 
 

@@ -10,6 +10,7 @@ import typer
 if TYPE_CHECKING:
     from twin.cam.machinable import Reach
     from twin.cam.sections import SlicedPart
+    from twin.tools.shape import ToolShape
 
 #: Without a pitch asked for, the part's longest side has this many slices.
 _SLICES_ALONG = 600
@@ -70,7 +71,7 @@ def _own_pitch(part: Path) -> float:
     return float((solid.vertices_mm.max(axis=0) - solid.vertices_mm.min(axis=0)).max()) / _SLICES_ALONG
 
 
-def _reach(sliced: SlicedPart, shape, *, above: bool, thin: float | None, threads: int | None) -> Reach:  # type: ignore[no-untyped-def]
+def _reach(sliced: SlicedPart, shape: ToolShape, *, above: bool, thin: float | None, threads: int | None) -> Reach:
     from twin.cam.element import StructuringElement
     from twin.cam.machinable import unmachinable
 
@@ -88,6 +89,6 @@ def _warn_if_coarse(reaches: dict[str, Reach], thin: float | None) -> None:
         bound = thin_bound_mm(reach.element, reach.pitch_mm)
         if thin is not None and thin < bound:
             warn(
-                f"{text}: slices {reach.pitch_mm:.4g} mm apart may show leftovers up to {bound:.3g} mm thick that are none; "
-                f"for {thin:g} mm expected a pitch of at most {thin:.3g} mm"
+                f"{text}: slices {reach.pitch_mm:.4g} mm apart may show leftovers up to {bound:.3g} mm thick that are "
+                f"none; for {thin:g} mm expected a pitch of at most {thin:.3g} mm"
             )

@@ -6,11 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path as Outline
 
+from twin.geometry.shapes import Shape, cut_along, outline_rings, united
 from twin.geometry.slicing import mesh_sections
 from twin.workpiece.store import PLANE_AXES
 
@@ -52,8 +54,7 @@ def _draw_above(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> No
         axes.plot([], [], color=color, linewidth=5.0, label=label if reach.leftovers else f"{text}: nothing stays")
         for region in reach.leftovers:
             if region.axis == 2:
-                whole = shapely.union_all(region.pieces)
-                _fill(axes, whole, color)
+                _fill(axes, united(region.pieces), color)
     low, high = sliced.slices.low_mm, sliced.slices.high_mm
     _frame(axes, low[:2], high[:2], "X, mm", "Y, mm")
     axes.set_title("What tools cannot reach, from above")
@@ -90,32 +91,21 @@ def _cut_boxes(region: Leftover, pitch_mm: float, axis: int, plane: float) -> li
     """Where a plane across x or y cuts a region's slices, as rectangles of one pitch."""
     if region.axis != 2:
         return []
-    low, high = (float(f) for f in (region.low_mm.min() - 1.0, region.high_mm.max() + 1.0))
-    ends = [(plane, low), (plane, high)] if axis == 0 else [(low, plane), (high, plane)]
     boxes = []
     for piece, z in zip(region.pieces, region.planes_mm, strict=True):
-        for part in shapely.get_parts(shapely.intersection(piece, shapely.linestrings(ends))):
-            along = shapely.get_coordinates(part)[:, 1 - axis]
-            if len(along) >= 2:
-                a, b, z0, z1 = along.min(), along.max(), z - 0.5 * pitch_mm, z + 0.5 * pitch_mm
-                boxes.append(np.array([(a, z0), (b, z0), (b, z1), (a, z1)]))
+        z0, z1 = z - 0.5 * pitch_mm, z + 0.5 * pitch_mm
+        boxes += [np.array([(a, z0), (b, z0), (b, z1), (a, z1)]) for a, b in cut_along(piece, axis, plane)]
     return boxes
 
 
-def _fill(axes: Axes, shape: shapely.Geometry, color: str) -> None:
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Outline
-
-    for part in shapely.get_parts(shape):
-        rings = [shapely.get_coordinates(r) for r in (part.exterior, *part.interiors)]
-        outline = Outline.make_compound_path(*(Outline(r, closed=True) for r in rings))
-        axes.add_patch(PathPatch(outline, facecolor=color, edgecolor="none", alpha=0.85))
+def _fill(axes: Axes, shape: Shape, color: str) -> None:
+    rings = [Outline(ring, closed=True) for ring in outline_rings(shape)]
+    if rings:
+        patch = PathPatch(Outline.make_compound_path(*rings), facecolor=color, edgecolor="none", alpha=0.85)
+        axes.add_patch(patch)
 
 
 def _fill_region(axes: Axes, region: Region) -> None:
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Outline
-
     rings = [Outline(np.concatenate((r, r[:1])), closed=True) for r in region.rings]
     if rings:
         axes.add_patch(PathPatch(Outline.make_compound_path(*rings), facecolor="0.8", edgecolor="0.35", linewidth=0.8))

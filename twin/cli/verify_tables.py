@@ -28,7 +28,7 @@ def print_deviation(found: Deviation, collisions: Sequence[Collision], console: 
     if rest > 0:
         console.print(f"and {plural(rest, 'place')} more", markup=False)
     console.print(
-        f"design gone {volume(found.gouged_mm3)}, left over it {volume(found.left_mm3)}; "
+        f"gouged {volume(found.gouged_mm3)}, left over the design {volume(found.left_mm3)}; "
         f"known to {_um(found.resolution_mm)} µm on rays {found.pitch_mm:.3g} mm apart",
         markup=False,
         soft_wrap=True,

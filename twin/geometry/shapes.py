@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 import shapely
@@ -12,11 +13,13 @@ from twin.arrays import FloatArray
 from twin.geometry.clip import DECIMALS, LEAST_AREA_MM2
 from twin.geometry.region import Region, signed_area_mm2
 
-#: An array of GEOS polygons, one a plane; it never leaves the modules that ask for it.
-Shapes = NDArray[np.object_]
+#: A GEOS polygon, or several in one.
+Shape: TypeAlias = Any
+#: An array of them, one a plane.
+Shapes: TypeAlias = NDArray[np.object_]
 
 
-def to_shape(region: Region) -> shapely.Geometry:
+def to_shape(region: Region) -> Shape:
     """A region as one polygon, or several."""
     rings = [shapely.linearrings(r) for r in region.rings]
     signs = [signed_area_mm2(r) for r in region.rings]
@@ -38,7 +41,7 @@ def to_shapes(regions: Sequence[Region]) -> Shapes:
     return shapes
 
 
-def to_region(shape: shapely.Geometry) -> Region:
+def to_region(shape: Shape) -> Region:
     """Polygons as a region, vertices rounded to 1e-5 mm."""
     rings: list[FloatArray] = []
     for part in shapely.get_parts(shapely.orient_polygons(shapely.set_precision(shape, 10.0**-DECIMALS))):
@@ -51,6 +54,45 @@ def to_region(shape: shapely.Geometry) -> Region:
     return Region.of(*rings)
 
 
-def _valid(shape: shapely.Geometry) -> shapely.Geometry:
+def box_shape(low_u_mm: float, low_v_mm: float, high_u_mm: float, high_v_mm: float) -> Shape:
+    """A rectangle."""
+    return shapely.box(low_u_mm, low_v_mm, high_u_mm, high_v_mm)
+
+
+def minus(one: Shape | Shapes, other: Shape | Shapes) -> Shapes:
+    """One without the other, plane by plane; a single polygon stands for all planes."""
+    return np.asarray(shapely.difference(one, other), dtype=object)
+
+
+def grown_each(shapes: Shapes, radius_mm: float, segments: int) -> Shapes:
+    """Every polygon inflated alone.
+
+    Args:
+        segments: segments a quarter circle.
+    """
+    return np.asarray(shapely.buffer(shapes, radius_mm, quad_segs=segments), dtype=object)
+
+
+def outline_rings(shape: Shape) -> list[FloatArray]:
+    """All rings of a polygon, outer ones counter-clockwise, holes clockwise; the last point repeats the first."""
+    parts = shapely.get_parts(shapely.orient_polygons(shape))
+    return [shapely.get_coordinates(r) for p in parts for r in (p.exterior, *p.interiors)]
+
+
+def united(shapes: Shapes) -> Shape:
+    """One polygon of all."""
+    return shapely.union_all(shapes)
+
+
+def cut_along(shape: Shape, fixed: int, at_mm: float) -> list[tuple[float, float]]:
+    """Ranges of a polygon on a line where one coordinate (0 for u, 1 for v) is fixed, in the other coordinate."""
+    low, high = shapely.bounds(shape)[[1 - fixed, 3 - fixed]]
+    ends = [(at_mm, low - 1.0), (at_mm, high + 1.0)] if fixed == 0 else [(low - 1.0, at_mm), (high + 1.0, at_mm)]
+    parts = shapely.get_parts(shapely.intersection(shape, shapely.linestrings(ends)))
+    spans = [shapely.get_coordinates(p)[:, 1 - fixed] for p in parts]
+    return [(float(s.min()), float(s.max())) for s in spans if len(s) > 1]
+
+
+def _valid(shape: Shape) -> Shape:
     """Rounding may let rings of a plane touch where they should not."""
     return shape if shapely.is_valid(shape) else shapely.buffer(shape, 0.0)

@@ -97,7 +97,7 @@ def _regions(points_mm: FloatArray, rings: NDArray[np.int64], planes: int) -> tu
     whole, kept = np.empty(points_mm.shape, dtype=np.int64), np.empty_like(rings)
     kept = kept[: kernels.clean_rings(points_mm, rings, units, LEAST_AREA_MM2 * units**2, whole, kept)]
     simple = np.empty(planes, dtype=np.bool_)
-    kernels.simple_planes(whole, kept, planes, simple)
+    kernels.simple_planes(whole, kept, simple)
     points = whole / units
     points.flags.writeable = False
     found: list[list[FloatArray]] = [[] for _ in range(planes)]

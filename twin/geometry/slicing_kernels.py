@@ -54,7 +54,11 @@ def weld(points: NDArray[np.int64], ids: NDArray[np.int64], first: NDArray[np.in
 
 @njit(cache=True, nogil=True)
 def number_edges(
-    triangles: NDArray[np.int64], vertices: int, ends: NDArray[np.int64], ways: NDArray[np.int64], sides: NDArray[np.int64]
+    triangles: NDArray[np.int64],
+    vertices: int,
+    ends: NDArray[np.int64],
+    ways: NDArray[np.int64],
+    sides: NDArray[np.int64],
 ) -> int:
     """Number the edges of triangles, by the lower of their vertices.
 
@@ -253,7 +257,7 @@ def clean_rings(
     for r in range(len(rings)):
         first = n
         for i in range(rings[r, 1], rings[r, 2]):
-            u, v = np.int64(np.rint(points[i, 0] * units)), np.int64(np.rint(points[i, 1] * units))
+            u, v = int(np.rint(points[i, 0] * units)), int(np.rint(points[i, 1] * units))
             if n > first and whole[n - 1, 0] == u and whole[n - 1, 1] == v:
                 continue
             while n > first + 1 and _straight(whole[n - 2, 0], whole[n - 2, 1], whole[n - 1, 0], whole[n - 1, 1], u, v):
@@ -265,9 +269,8 @@ def clean_rings(
         begin = first
         while n - begin > 2:
             u, v = whole[begin, 0], whole[begin, 1]
-            if whole[n - 1, 0] == u and whole[n - 1, 1] == v:
-                n -= 1
-            elif _straight(whole[n - 2, 0], whole[n - 2, 1], whole[n - 1, 0], whole[n - 1, 1], u, v):
+            same = whole[n - 1, 0] == u and whole[n - 1, 1] == v
+            if same or _straight(whole[n - 2, 0], whole[n - 2, 1], whole[n - 1, 0], whole[n - 1, 1], u, v):
                 n -= 1
             elif _straight(whole[n - 1, 0], whole[n - 1, 1], u, v, whole[begin + 1, 0], whole[begin + 1, 1]):
                 begin += 1
@@ -306,15 +309,12 @@ def _side(au: int, av: int, bu: int, bv: int, cu: int, cv: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def simple_planes(
-    whole: NDArray[np.int64], rings: NDArray[np.int64], planes: int, simple: NDArray[np.bool_]
-) -> None:
+def simple_planes(whole: NDArray[np.int64], rings: NDArray[np.int64], simple: NDArray[np.bool_]) -> None:
     """Which planes have rings that neither cross nor touch, material on their left: nothing is to be united there.
 
     Args:
         whole: points in whole units.
         rings: rows (plane, first, one past the last point), by plane.
-        planes: number of planes.
         simple: shape (planes,), filled.
     """
     simple[:] = True

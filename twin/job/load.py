@@ -18,7 +18,10 @@ from twin.job.problems import Location, Problem, problems_of
 from twin.job.rules import RULES
 from twin.job.toml_text import toml_text
 
-_FILES: tuple[tuple[str, str], ...] = (("program", "file"), ("stock", "stl"), ("output", "mcap"), ("output", "rrd"))
+_FILES: tuple[tuple[str, str], ...] = (
+    *(("program", "file"), ("stock", "stl"), ("output", "mcap"), ("output", "rrd")),
+    ("measured", "file"),
+)
 _TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
@@ -29,18 +32,31 @@ def load_job(path: str | PathLike[str]) -> Job:
         JobError: the file cannot be read, is no TOML, or has mistakes: all of them are in the message.
     """
     path = Path(path)
+    data, text = read_toml(path)
+    return _job(data, path, text)
+
+
+def read_toml(path: Path, what: str = "a job file", refuse: type[JobError] = JobError) -> tuple[dict[str, Any], str]:
+    """A TOML file's tables and its text.
+
+    Args:
+        what: what the file should be, for the message.
+        refuse: the error for a file that cannot be read.
+
+    Raises:
+        JobError: ``refuse``, with the place of what is no TOML.
+    """
     try:
         text = path.read_bytes().decode("utf-8-sig")
     except OSError as error:
         why = (error.strerror or str(error)).lower()
-        raise JobError(str(path), [f"cannot be read: {why}; expected a job file (TOML)"]) from error
+        raise refuse(str(path), [f"cannot be read: {why}; expected {what} (TOML)"]) from error
     except UnicodeDecodeError as error:
-        raise JobError(str(path), [f"byte {error.start} is not UTF-8; expected a job file (TOML)"]) from error
+        raise refuse(str(path), [f"byte {error.start} is not UTF-8; expected {what} (TOML)"]) from error
     try:
-        data = tomllib.loads(text)
+        return tomllib.loads(text), text
     except tomllib.TOMLDecodeError as error:
-        raise _syntax_error(path, text, str(error)) from error
-    return _job(data, path, text)
+        raise _syntax_error(path, text, str(error), refuse) from error
 
 
 def job_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") -> Job:
@@ -55,13 +71,13 @@ def job_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") ->
     return _job(data, Path(folder) / "job.toml", toml_text(data))
 
 
-def _syntax_error(path: Path, text: str, message: str) -> JobError:
+def _syntax_error(path: Path, text: str, message: str, refuse: type[JobError]) -> JobError:
     """TOML's complaint with the place in front."""
     lines = text.splitlines() or [""]
     place = _TOML_PLACE.search(message)
     line, column = (len(lines), len(lines[-1]) + 1) if place is None or place[1] is None else map(int, place.groups())
     what = _TOML_PLACE.sub("", message)
-    return JobError(f"{path}:{line}:{column}", [f"no valid TOML: {what[:1].lower()}{what[1:]}"])
+    return refuse(f"{path}:{line}:{column}", [f"no valid TOML: {what[:1].lower()}{what[1:]}"])
 
 
 def _job(data: Mapping[str, Any], path: Path, text: str) -> Job:

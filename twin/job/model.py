@@ -119,6 +119,12 @@ class Cutting(Table):
     convention: Literal["meridian"] = Field(
         default="meridian", description="length that the edge terms count: along the tool's meridian"
     )
+    standard_errors: Annotated[tuple[float, float, float, float, float, float], Strict(False)] | None = Field(
+        default=None, description="standard errors of Ktc, Kte, Krc, Kre, Kac, Kae; kept with the run, not used"
+    )
+    correlation: Annotated[tuple[tuple[float, ...], ...], Strict(False)] | None = Field(
+        default=None, description="correlation of these errors, six rows of six; kept with the run, not used"
+    )
 
 
 class Tool(Table):
@@ -179,6 +185,33 @@ class Output(Table):
     force_on: ForceOn = Field(default="tool", description="body that feels the forces in summary and export")
 
 
+class Measured(Table):
+    """A measured force log of this program, for comparisons: how it is read."""
+
+    file: FilePath | None = Field(default=None, description="the log, relative to the job file's folder")
+    map: str | None = Field(
+        default=None, min_length=1, description="columns for the axes with their signs, e.g. x=-Fy,y=-Fx,z=Fz"
+    )
+    force_on: ForceOn = Field(default="tool", description="body that the mapped force acts on")
+    columns: Annotated[tuple[str, ...], Strict(False)] | None = Field(
+        default=None, description="names of all columns, with units, in place of the file's own"
+    )
+    unit: str | None = Field(
+        default=None, min_length=1, description="unit of the forces, where the file does not say it"
+    )
+    rate_hz: float | None = Field(default=None, gt=0.0, description="sampling rate, where the file does not say it, Hz")
+    delimiter: str | None = Field(default=None, description="delimiter of a text file")
+    decimal: Literal[".", ","] | None = Field(default=None, description="decimal mark of a text file")
+    group: str | None = Field(default=None, min_length=1, description="group, variable or topic in the file")
+    lag_s: float | None = Field(
+        default=None, description="how late the log is, s; found by cross-correlation if not given"
+    )
+    offset: str = Field(default="none", description="zero of the amplifier: none, air, BEGIN:END or X,Y,Z")
+    windows: Annotated[tuple[str, ...], Strict(False)] = Field(
+        default=(), description="windows of the comparison on the run's clock, BEGIN:END in s"
+    )
+
+
 class JobFile(Table):
     """A replay: NC program, machine, stock, tools, cutting coefficients, fineness and outputs."""
 
@@ -193,6 +226,7 @@ class JobFile(Table):
     )
     simulation: Simulation = Field(default_factory=Simulation, description="how finely the replay is computed")
     output: Output = Field(default_factory=Output, description="where the run goes")
+    measured: Measured | None = Field(default=None, description="a measured log to compare the run with")
 
 
 class Job(JobFile):

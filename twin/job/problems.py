@@ -166,6 +166,8 @@ def allowed(annotation: Any, notes: Iterable[Any] = ()) -> str:
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Literal:
         return "one of " + ", ".join(map(_toml, arguments))
+    if origin is list:
+        return _allowed_list((*arguments, ...))
     if origin is tuple:
         return _allowed_list(arguments)
     if origin is dict:
@@ -181,8 +183,12 @@ def _allowed_list(items: tuple[Any, ...]) -> str:
     if items[-1] is not Ellipsis:
         return f"a list of {_COUNTS[len(items)]} numbers"
     inner = _bare(items[0])
-    is_table = isinstance(inner, type) and issubclass(inner, BaseModel)
-    return "a list of tables" if is_table else "a list of numbers"
+    if get_origin(inner) is tuple:
+        return f"a list of {_allowed_list(get_args(inner)).replace('a list', 'lists')}"
+    if not isinstance(inner, type):
+        return "a list"
+    kinds = {BaseModel: "tables", PurePath: "file names", str: "texts"}
+    return "a list of " + next((word for kind, word in kinds.items() if issubclass(inner, kind)), "numbers")
 
 
 def _bounds(notes: Iterable[Any]) -> Iterator[str]:

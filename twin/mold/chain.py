@@ -111,7 +111,7 @@ class MoldChain:
     def _workspace(self) -> Workspace:
         box = self.job.stock.box_mm
         low: FloatArray = self.part.vertices_mm.min(axis=0)
-        high: FloatArray = self.part.vertices_mm.max(axis=0) + (0.0, 0.0, self.job.stock.top_mm)
+        high: FloatArray = self.part.vertices_mm.max(axis=0) + np.array([0.0, 0.0, self.job.stock.top_mm])
         if box is not None:
             low, high = np.array(box.min), np.array(box.max)
         checks.check_stock(self.part, low, high)

@@ -42,6 +42,9 @@ _CHORD_MM = 0.0005
 _PLANES_TOGETHER = 32
 #: What a contour's default overhang lacks to the tool's radius, so that flush sides of the stock are left alone.
 _SHORT = 1e-3
+#: Tips higher than this above the stock are in air, and rows are broken there.
+_AIR_MM = 0.01
+#: Rapids are this much above the stock, unless told otherwise.
 SAFE_ABOVE_MM = 5.0
 
 
@@ -146,7 +149,7 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
         lines = tip_lines(profiles, element, at, places, floor, allowance_mm=left, chord_mm=_CHORD_MM)
         rows = Rows(direction=settings.direction, at_mm=at, lines_mm=lines)
         options = ScanOptions(
-            top_mm=float(ground.stock_mm[1, 2]),
+            top_mm=float(ground.stock_mm[1, 2]) + _AIR_MM,
             zigzag=settings.zigzag,
             climb=settings.climb,
             layer=layer,

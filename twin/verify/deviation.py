@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -72,7 +73,8 @@ class Deviation:
         design_points_mm, design_deviation_mm: points of the design and how far the machined surface stands off there,
             shape (m, 3) and (m,).
         tolerance_mm: allowed gouge; excess_mm: allowed excess.
-        gouged_mm3, left_mm3: volume of the design that is gone, volume left outside of it.
+        gouged_mm3: volume of gouges, as depth times area; a rib that is gone is not in it, but in ``lost_mm``.
+        left_mm3: volume left over the design.
         lost_mm: how far the nearest machined surface is from the point of the design that is missing most, 0 for none.
         resolution_mm: what distances at the points are known to.
         pitch_mm: largest distance of the rays; what is smaller may stand between them unseen.
@@ -155,9 +157,10 @@ def deviation(
     limits = limits or Limits.of(design)
     tree = ClosestPoints(design.vertices_mm, design.triangles, design.edges)
     found = [_one_direction(rays, tree, store, limits, threads) for rays in cast(store, design)]
-    points, away, area, wanted, over = (np.concatenate([f[i] for f in found]) for i in range(5))
-    volumes = np.mean([f[5] for f in found], axis=0)
+    points, away, area, touched, wanted, over = (np.concatenate([f[i] for f in found]) for i in range(6))
     pitch = float(store.pitch_mm.max())
+    lost = _lost(points, wanted, over, tolerance_mm + _LOST_PITCHES * pitch)
+    points, away, area = points[touched], away[touched], area[touched]
     return Deviation(
         points_mm=points,
         deviation_mm=away,
@@ -166,19 +169,30 @@ def deviation(
         design_deviation_mm=over,
         tolerance_mm=tolerance_mm,
         excess_mm=excess,
-        gouged_mm3=float(volumes[0]),
-        left_mm3=float(volumes[1]),
-        lost_mm=_lost(points, wanted, over, tolerance_mm + _LOST_PITCHES * pitch),
+        gouged_mm3=float((np.maximum(-away, 0.0) * area).sum()),
+        left_mm3=sum(f.left_mm3 for f in found),
+        lost_mm=lost,
         resolution_mm=Tolerance.for_pitch(pitch).chord_mm + _ROUNDING_MM,
         pitch_mm=pitch,
         places=places_of(points, away, area, tolerance_mm, excess, pitch),
     )
 
 
+class _Direction(NamedTuple):
+    """What rays along one axis tell: points of the machined surface, of the design, and the volume left over it."""
+
+    points: FloatArray
+    away: FloatArray
+    area: FloatArray
+    touched: NDArray[np.bool_]
+    wanted: FloatArray
+    over: FloatArray
+    left_mm3: float
+
+
 def _one_direction(
     rays: Rays, tree: ClosestPoints, store: TriSlices, limits: Limits, threads: int | None
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, tuple[float, float]]:
-    """Points of the machined surface with deviation and area, points of the design with theirs, volumes."""
+) -> _Direction:
     points, _, _ = rays.points(rays.machined)
     points = points[limits.hold(points)]
     near = tree.ask(points, threads)
@@ -187,14 +201,28 @@ def _one_direction(
     normals = np.where(far[:, None], apart / np.where(far, near.distance_mm, 1.0)[:, None], near.normals)
     area = np.abs(normals[:, rays.axis]) * rays.area_mm2
     touched = ~(_flush(points, store) & (np.abs(near.distance_mm) <= 2.0 * _ROUNDING_MM))
-    wanted, _, _ = rays.points(rays.design)
+    wanted, over, left = _design_side(rays, tree, limits, threads)
+    return _Direction(points, near.distance_mm, area, touched, wanted, over, left)
+
+
+def _design_side(
+    rays: Rays, tree: ClosestPoints, limits: Limits, threads: int | None
+) -> tuple[FloatArray, FloatArray, float]:
+    """Points of the design that rays meet squarely, what stands over them, and the volume of that.
+
+    The volume is the sum over the three directions of lengths on rays, each weighted by the square of the design's
+    normal along its ray: these squares add up to one, so that every part of the surface counts once.
+    """
+    wanted, _, out = rays.points(rays.design)
+    over = beyond(rays) if len(wanted) else np.empty(0)
     inside = limits.hold(wanted)
-    facing = np.zeros(len(wanted))
-    facing[inside] = np.abs(tree.ask(wanted[inside], threads).normals[:, rays.axis])
+    wanted, over, out = wanted[inside], over[inside], out[inside]
+    facing = np.abs(tree.ask(wanted, threads).normals[:, rays.axis])
+    end = np.where(out > 0.0, limits.high_mm[rays.axis], limits.low_mm[rays.axis])
+    standing = np.clip(over, 0.0, np.abs(end - wanted[:, rays.axis]))
+    left = float((standing * facing**2).sum()) * rays.area_mm2
     seen = facing >= _FACING
-    over = (beyond(rays) * facing)[seen] if len(wanted) else np.empty(0)
-    volumes = rays.volumes_mm3(limits.low_mm, limits.high_mm)
-    return points[touched], near.distance_mm[touched], area[touched], wanted[seen], over, volumes
+    return wanted[seen], (over * facing)[seen], left
 
 
 def _flush(points: FloatArray, store: TriSlices) -> NDArray[np.bool_]:

@@ -52,21 +52,6 @@ class Rays:
         out = np.where((np.arange(len(rays)) - ends.offsets[rays]) % 2 == 0, -1.0, 1.0)
         return points, rays, out
 
-    def volumes_mm3(self, low_mm: FloatArray, high_mm: FloatArray) -> tuple[float, float]:
-        """Volume of the design that is gone, and of what stands outside of the design, inside a box."""
-        a, b = self.machined, self.design
-        rays = np.concatenate([np.repeat(np.arange(len(self.places_mm)), np.diff(e.offsets)) for e in (a, b)])
-        at = np.clip(np.concatenate((a.ends_mm, b.ends_mm)), low_mm[self.axis], high_mm[self.axis])
-        of_machined = np.arange(len(at)) < len(a.ends_mm)
-        order = np.lexsort((at, rays))
-        rays, at, of_machined = rays[order], at[order], of_machined[order]
-        left, wanted = np.cumsum(of_machined) % 2 == 1, np.cumsum(~of_machined) % 2 == 1
-        places = self.places_mm[rays]
-        within = np.all((places > low_mm[list(self.across)]) & (places < high_mm[list(self.across)]), axis=1)
-        length = np.where(within, np.diff(at, append=at[-1:]), 0.0)
-        gone, over = length[wanted & ~left].sum(), length[left & ~wanted].sum()
-        return float(gone) * self.area_mm2, float(over) * self.area_mm2
-
 
 def cast(store: TriSlices, design: Solid) -> Iterator[Rays]:
     """Rays along x, y and z, at the planes of the other two families."""

@@ -1,0 +1,115 @@
+"""Comparisons of a run with a measured log in MCAP files: both forces sample by sample, and what was found as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from twin.archive import schemas
+from twin.archive.container import Container
+from twin.archive.forces import to_ns
+from twin.archive.partial import PartialFile
+from twin.arrays import FloatArray
+from twin.errors import ArchiveError
+
+#: Attachment that holds the result.
+RESULT = "comparison.json"
+_METADATA = "twin.comparison"
+_NAMES = tuple(name for name, _, _ in schemas.MESSAGES[schemas.COMPARISON])
+_FLUSH_BYTES = 1 << 20
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ComparedForces:
+    """Both forces at the log's samples.
+
+    Attributes:
+        t_s: shape (n,), on the run's clock.
+        spindle_angle_rad: shape (n,), of the run.
+        measured_n, simulated_n: shape (n, 3), force on the tool in machine axes.
+    """
+
+    t_s: FloatArray
+    spindle_angle_rad: FloatArray
+    measured_n: FloatArray
+    simulated_n: FloatArray
+
+
+def write_comparison(
+    path: str | PathLike[str],
+    forces: ComparedForces,
+    result: Mapping[str, Any],
+    heads: Mapping[str, str],
+    library: str,
+    *,
+    force: bool = False,
+) -> None:
+    """Write a comparison; the file has its name only when it is whole.
+
+    Args:
+        result: JSON object of all that was found.
+        heads: a few of its values as text, for any MCAP tool to show.
+        force: replace a file that is there.
+
+    Raises:
+        ArchiveError: it is there, or cannot be written; nothing is left then.
+    """
+    partial = PartialFile(Path(path), force=force)
+    try:
+        file = Container(partial.write, library, schemas.COMPARISON_PROFILE)
+        file.start()
+        file.add_attachment(RESULT, "application/json", json.dumps(result, ensure_ascii=False, indent=1).encode())
+        file.add_metadata(_METADATA, dict(heads))
+        rows = _encoded(forces)
+        for t_s, row in zip(forces.t_s.tolist(), rows, strict=True):
+            file.add_message(schemas.COMPARISON_TOPIC, to_ns(max(t_s, 0.0)), row.tobytes())
+            if file.pending_bytes > _FLUSH_BYTES:
+                file.flush()
+        file.finish()
+        partial.commit()
+    except BaseException:
+        partial.discard()
+        raise
+
+
+def read_comparison(path: str | PathLike[str]) -> tuple[ComparedForces, dict[str, Any]]:
+    """The forces of a comparison's file, and its result.
+
+    Raises:
+        ArchiveError: no such file, or none of a comparison.
+    """
+    from mcap.reader import make_reader
+
+    from twin.archive.foreign import read_numbers
+
+    _, columns = read_numbers(path, schemas.COMPARISON_TOPIC)
+    with Path(path).open("rb") as file:
+        found = next((a for a in make_reader(file).iter_attachments() if a.name == RESULT), None)
+    if found is None:
+        raise ArchiveError(f"{path}: holds no {RESULT}, expected a comparison's file")
+    values = [columns[name] for name in _NAMES]
+    forces = ComparedForces(
+        t_s=values[0],
+        spindle_angle_rad=values[1],
+        measured_n=np.column_stack(values[2:5]),
+        simulated_n=np.column_stack(values[5:8]),
+    )
+    return forces, json.loads(found.data)
+
+
+def _encoded(forces: ComparedForces) -> np.ndarray[tuple[int], np.dtype[np.void]]:
+    """Every sample as the bytes of one message: a tag and a double for each field, zeros too."""
+    numbers = {name: number for name, number, _ in schemas.MESSAGES[schemas.COMPARISON]}
+    kind = np.dtype([pair for name in _NAMES for pair in ((f"tag_{name}", "u1"), (name, "<f8"))])
+    rows = np.zeros(len(forces.t_s), kind)
+    columns = [forces.t_s, forces.spindle_angle_rad, *forces.measured_n.T, *forces.simulated_n.T]
+    for name, values in zip(_NAMES, columns, strict=True):
+        rows[f"tag_{name}"] = numbers[name] << 3 | 1
+        rows[name] = values
+    return rows

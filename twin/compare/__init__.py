@@ -1,0 +1,1 @@
+"""A run and a measured log laid over each other (docs/compare.md)."""

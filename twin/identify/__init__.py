@@ -1,0 +1,1 @@
+"""Cutting coefficients out of test cuts (docs/identify.md)."""

@@ -1,0 +1,128 @@
+"""Where in a log the tool cuts, where it is in air, and which part of the cut is steady."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from twin.arrays import FloatArray
+
+Span = tuple[float, float]
+
+#: The force must vary so many times more in the cut than in air for air to be told from cut.
+_CONTRAST = 4.0
+#: Between the levels of air and cut, where one ends and the other begins.
+_THRESHOLD = 0.15
+#: Air nearer than so many revolutions to the cut is left out.
+_CLEAR_REVOLUTIONS = 3
+#: Least revolutions of a stretch of air that is used.
+_LEAST_AIR = 5
+#: Contact is what varies more than air by so many standard deviations, or by this part of the contrast.
+_SCATTER = 4.0
+_FAINT = 0.01
+#: How much farther than its reach the tool goes before the cut is called steady.
+_ENTRY = 1.05
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Cut and air in a log.
+
+    Attributes:
+        cut_s: from, to: the longest stretch in which the force varies within each revolution.
+        air_s: stretches before and after it without.
+        begins, ends: whether the log has the beginning and the end of the cut.
+    """
+
+    cut_s: Span
+    air_s: tuple[Span, ...]
+    begins: bool
+    ends: bool
+
+
+def find_cut(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> Found:
+    """Tell cut from air by how much the force varies within each revolution.
+
+    A log that varies alike all through is all cut.
+
+    Args:
+        t_s: shape (n,), increasing.
+        force_n: shape (n, axes).
+    """
+    edges, activity = _activity(t_s, force_n, revolution_s)
+    low, high = np.percentile(activity, 2.0), np.percentile(activity, 95.0)
+    whole = (float(t_s[0]), float(t_s[-1]))
+    if len(activity) < 3 * _LEAST_AIR or high < _CONTRAST * low:
+        return Found(whole, (), False, False)
+    cutting = activity > low + _THRESHOLD * (high - low)
+    first, last = _longest(_closed(cutting))
+    cut = (float(edges[first]), float(edges[last + 1]))
+    touch, leave = _contact(activity, first, last, float(high - low), cutting)
+    clear = _CLEAR_REVOLUTIONS * revolution_s
+    spans = ((whole[0], float(edges[touch]) - clear), (float(edges[leave + 1]) + clear, whole[1]))
+    air = tuple(s for s in spans if s[1] - s[0] >= _LEAST_AIR * revolution_s)
+    return Found(cut, air, first > 0, last < len(activity) - 1)
+
+
+def steady_part(found: Found, reach_mm: float, feed_mm_s: float, revolution_s: float) -> Span | None:
+    """The part of a straight cut in which the whole front of the tool is in the stock; None where there is none.
+
+    From the first touch the tool goes as far as its front reaches before its axis until all of it is in, and so far
+    before the end it begins to leave.
+
+    Args:
+        reach_mm: how far engaged points lie before the axis.
+    """
+    trim = max(_ENTRY * reach_mm / feed_mm_s, 2.0 * revolution_s)
+    first = found.cut_s[0] + (trim if found.begins else 0.0)
+    last = found.cut_s[1] - (trim if found.ends else 0.0)
+    return (first, last) if last - first >= 3.0 * revolution_s else None
+
+
+def _activity(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> tuple[FloatArray, FloatArray]:
+    """Ends of blocks of one revolution, and the standard deviation of the force in each."""
+    count = max(1, int((t_s[-1] - t_s[0]) / revolution_s))
+    edges = t_s[0] + revolution_s * np.arange(count + 1)
+    at = np.searchsorted(t_s, edges)
+    samples = np.maximum(np.diff(at), 1)
+    centred = force_n - force_n.mean(axis=0)
+    sums = np.concatenate((np.zeros((1, force_n.shape[1])), np.cumsum(centred, axis=0)))
+    squares = np.concatenate((np.zeros((1, force_n.shape[1])), np.cumsum(centred**2, axis=0)))
+    mean = np.diff(sums[at], axis=0) / samples[:, None]
+    variance = np.diff(squares[at], axis=0) / samples[:, None] - mean**2
+    return edges, np.sqrt(np.maximum(variance, 0.0).sum(axis=1))
+
+
+def _contact(
+    activity: FloatArray, first: int, last: int, contrast: float, cutting: np.ndarray[tuple[int], np.dtype[np.bool_]]
+) -> tuple[int, int]:
+    """First and last block with any contact about a cut: its beginning may be weaker than what is called cut."""
+    air = activity[~cutting]
+    middle = float(np.median(air))
+    scatter = 1.4826 * float(np.median(np.abs(air - middle)))
+    limit = middle + max(_SCATTER * scatter, _FAINT * contrast)
+    while first > 0 and activity[first - 1] > limit:
+        first -= 1
+    while last < len(activity) - 1 and activity[last + 1] > limit:
+        last += 1
+    return first, last
+
+
+def _closed(cutting: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Holes of one or two revolutions filled."""
+    out = cutting.copy()
+    on = np.flatnonzero(cutting)
+    for a, b in pairwise(on.tolist()):
+        if 1 < b - a <= 3:
+            out[a:b] = True
+    return out
+
+
+def _longest(cutting: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> tuple[int, int]:
+    """First and last block of the longest run."""
+    padded = np.concatenate(([False], cutting, [False])).astype(np.int8)
+    starts, stops = np.flatnonzero(np.diff(padded) == 1), np.flatnonzero(np.diff(padded) == -1)
+    best = int(np.argmax(stops - starts))
+    return int(starts[best]), int(stops[best]) - 1

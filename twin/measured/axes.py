@@ -1,0 +1,146 @@
+"""The axis map: which column of a log, with which sign, is the force along each machine axis."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from twin.errors import MeasuredError
+from twin.measured.log import AXES
+from twin.measured.units import split_unit
+
+#: Factor and column.
+Term: TypeAlias = tuple[float, str]
+
+_SCALE = re.compile(r"^(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?|\.\d+)\s*\*\s*")
+_EXAMPLE = "x=-Fy,y=-Fx,z=Fz"
+_FORCE_NAMES = tuple(
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        r"(?:^|[\s_./:-])f[\s_.-]*{axis}(?:$|[\s_./:(\d-])",
+        r"(?:force|kraft|load|kraefte|kräfte|fuerza|effort)[\s_.:-]*{axis}(?:$|[\s_./:-])",
+        r"(?:^|[\s_./:-]){axis}[\s_.:-]*(?:axis)?[\s_.:-]*(?:force|kraft|load|effort)",
+        r"^{axis}$",
+    )
+)
+_NOT_MEASURED = re.compile(r"(?:^|[\s_.(-])(?:sim|simul|model|pred|calc|comp|theor|fit|est)", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class AxisMap:
+    """Terms for each axis, e.g. ``x=-Fy,y=-Fx,z=Fz``.
+
+    A term is a sign, perhaps a factor (``2.5*Fx``, for a channel whose sensitivity is known), and a column: its name in
+    the file with or without the unit, in any case, or ``#3`` for the third one. Sums are allowed: ``x=Fx12+Fx34``. An
+    axis that is left out is not measured.
+
+    Attributes:
+        entries: axis and the text of its sum, in the order x, y, z.
+    """
+
+    entries: tuple[tuple[str, str], ...]
+
+    @classmethod
+    def parse(cls, text: str) -> AxisMap:
+        """A map from its text.
+
+        Raises:
+            MeasuredError: no map: the message names the part that is none.
+        """
+        found: dict[str, str] = {}
+        for part in _parts(text):
+            axis, equals, column = (p.strip() for p in part.partition("="))
+            axis = axis.lower().removeprefix("f")
+            if not equals or axis not in AXES or not column.strip("+- "):
+                raise MeasuredError(
+                    f"axis map {text!r}: {part.strip()!r} is no axis = column, expected e.g. {_EXAMPLE}"
+                )
+            if axis in found:
+                raise MeasuredError(f"axis map {text!r}: {axis} is given twice, expected e.g. {_EXAMPLE}")
+            found[axis] = column
+        if not found:
+            raise MeasuredError(f"axis map {text!r} is empty, expected e.g. {_EXAMPLE}")
+        return cls(tuple((axis, found[axis]) for axis in AXES if axis in found))
+
+    def __str__(self) -> str:
+        return ",".join(f"{axis}={column}" for axis, column in self.entries)
+
+    def terms(self, names: Mapping[str, str]) -> dict[str, tuple[Term, ...]]:
+        """Factors and columns for each axis.
+
+        Args:
+            names: columns by every way of naming them, see `aliases`.
+
+        Raises:
+            MeasuredError: an unknown column.
+        """
+        made = {}
+        for axis, text in self.entries:
+            found = _sum(text, names)
+            if found is None:
+                known = ", ".join(dict.fromkeys(names.values()))
+                raise MeasuredError(f"axis map {str(self)!r}: no column {text.lstrip('+-')!r}; columns are {known}")
+            made[axis] = found
+        return made
+
+
+def aliases(columns: Iterable[str]) -> dict[str, str]:
+    """Columns by their names, lower-case names, names without unit, and numbers; what is not unique is left out."""
+    names = list(columns)
+    made: dict[str, str] = {}
+    bases = [split_unit(n)[0] for n in names]
+    for keys in (names, bases, list(map(_key, names)), list(map(_key, bases))):
+        for name, key in zip(names, keys, strict=True):
+            if keys.count(key) == 1:
+                made.setdefault(key, name)
+    for index, name in enumerate(names):
+        made.setdefault(f"#{index + 1}", name)
+    return made
+
+
+def guess_map(columns: Iterable[str]) -> AxisMap | None:
+    """The map that the names themselves tell, ``x=Fx,y=Fy,z=Fz``; None where they do not, or tell it twice.
+
+    Where measured and computed forces stand side by side, those that are named as computed are left out.
+    """
+    names = list(columns)
+    for among in (names, [n for n in names if not _NOT_MEASURED.search(n)]):
+        for patterns in (*((p,) for p in _FORCE_NAMES), _FORCE_NAMES[:-1]):
+            found = {axis: [n for n in among if any(_matches(p, axis, n) for p in patterns)] for axis in AXES}
+            if all(len(found[axis]) == 1 for axis in AXES):
+                return AxisMap(tuple((axis, found[axis][0]) for axis in AXES))
+    return None
+
+
+def _matches(pattern: re.Pattern[str], axis: str, name: str) -> bool:
+    base, _ = split_unit(name)
+    return re.search(pattern.pattern.replace("{axis}", axis), base, re.IGNORECASE) is not None
+
+
+def _parts(text: str) -> list[str]:
+    """The map's parts: a comma or semicolon ends one where an axis follows."""
+    return [p for p in re.split(r"[,;\s]+(?=[fF]?[xyzXYZ]\s*=)", text.strip().strip(",;")) if p.strip()]
+
+
+def _key(text: str) -> str:
+    return re.sub(r"\s+", " ", text.strip().lower())
+
+
+def _sum(text: str, names: Mapping[str, str]) -> tuple[Term, ...] | None:
+    """A sum's terms; names may hold + and - themselves, so the longest first column that is known is taken."""
+    text = text.strip()
+    sign = -1.0 if text.startswith("-") else 1.0
+    rest = text.lstrip("+-").strip() if text[:1] in "+-" else text
+    if scale := _SCALE.match(rest):
+        sign, rest = sign * float(scale[1]), rest[scale.end() :]
+    for end in [len(rest), *(i for i in range(len(rest) - 1, 0, -1) if rest[i] in "+-")]:
+        column = names.get(rest[:end].strip()) or names.get(_key(rest[:end]))
+        if column is None:
+            continue
+        if end == len(rest):
+            return ((sign, column),)
+        if (others := _sum(rest[end:], names)) is not None:
+            return ((sign, column), *others)
+    return None

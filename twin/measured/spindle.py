@@ -1,0 +1,119 @@
+"""Spindle speed from what was measured: trigger pulses, an angle, or the tooth-passing lines of a spectrum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from twin.arrays import FloatArray
+from twin.measured.log import ForceLog
+from twin.measured.uniform import pieces, uniform
+
+#: Multiples of the tooth-passing frequency that are looked at.
+_MOST_LINES = 8
+#: The comb is looked for at speeds from this to that part of the expected one.
+_SEARCHED = (0.65, 1.5)
+#: Part of the alternating power that the comb must hold to count as found.
+_LEAST_SHARE = 0.25
+#: Longest stretch that is looked at, samples.
+_MOST_SAMPLES = 1 << 20
+_FINE_SAMPLES = 1 << 17
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpindleSpeed:
+    """A measured spindle speed.
+
+    Attributes:
+        rpm: always positive.
+        share: part of the alternating power on the comb's lines, 1 where pulses or an angle tell the speed.
+        way: ``spectrum``, ``trigger`` or ``angle``.
+    """
+
+    rpm: float
+    share: float
+    way: str
+
+
+def spindle_speed(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpeed | None:
+    """The speed of the spindle in a log; None where nothing tells it.
+
+    Args:
+        teeth: of the tool.
+        expected_rpm: speeds from 0.65 to 1.5 times this one are looked at in a spectrum.
+    """
+    if log.trigger_s is not None and len(log.trigger_s) > 2:
+        return SpindleSpeed(rpm=60.0 / float(np.median(np.diff(log.trigger_s))), share=1.0, way="trigger")
+    if log.spindle_angle_rad is not None and abs(turned := float(np.ptp(log.spindle_angle_rad))) > 2.0 * np.pi:
+        return SpindleSpeed(rpm=60.0 * turned / (2.0 * np.pi) / log.duration_s, share=1.0, way="angle")
+    return _from_spectrum(uniform(log), teeth, abs(expected_rpm))
+
+
+def _from_spectrum(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpeed | None:
+    """Search for the comb on a grid finer than the spectrum's resolution, then refine."""
+    part = max(pieces(log), key=lambda s: s.stop - s.start)
+    force = log.force_n[part][:_MOST_SAMPLES]
+    n = len(force)
+    passing = teeth * expected_rpm / 60.0
+    low, high = _SEARCHED[0] * passing, _SEARCHED[1] * passing
+    if not passing > 0.0 or n / log.rate_hz < 4.0 / passing or high > 0.5 * log.rate_hz:
+        return None
+    window = np.hanning(n)[:, None]
+    moving = (force - force.mean(axis=0)) * window
+    padded = 4 * n
+    power = np.sum(np.abs(np.fft.rfft(moving, padded, axis=0)) ** 2, axis=1)
+    step = log.rate_hz / padded
+    found = np.arange(low, high, 0.5 * step)
+    scores = _comb(power, step, found, log.rate_hz)
+    best = float(found[np.argmax(scores)])
+    hz = _refined(moving[:_FINE_SAMPLES], log.rate_hz, best, step)
+    share = _share(power, step, hz, log.rate_hz, n)
+    if share < _LEAST_SHARE:
+        return None
+    return SpindleSpeed(rpm=60.0 * hz / teeth, share=share, way="spectrum")
+
+
+def _refined(moving: FloatArray, rate_hz: float, hz: float, reach_hz: float) -> float:
+    """The frequency next to one on the grid at which the comb's power, without any grid, is highest."""
+    orders = np.arange(1, _lines(hz, rate_hz) + 1)
+    t_s = np.arange(len(moving)) / rate_hz
+
+    def loss(at_hz: float) -> float:
+        base = np.exp(-2.0j * np.pi * at_hz * t_s)
+        turn, total = np.ones_like(base), 0.0
+        for _ in orders:
+            turn = turn * base
+            total += float(np.sum(np.abs(turn @ moving) ** 2))
+        return -total
+
+    found = minimize_scalar(
+        loss, bounds=(hz - reach_hz, hz + reach_hz), method="bounded", options={"xatol": 1e-4 * reach_hz}
+    )
+    return float(found.x)
+
+
+def _lines(hz: float, rate_hz: float) -> int:
+    return max(1, min(_MOST_LINES, int(0.45 * rate_hz / hz)))
+
+
+def _comb(power: FloatArray, step: float, hz: FloatArray, rate_hz: float) -> FloatArray:
+    """Power on the multiples of frequencies; the same number of multiples for all of them."""
+    at = np.arange(len(power)) * step
+    total = np.zeros(len(hz))
+    for k in range(1, _lines(float(hz.max()), rate_hz) + 1):
+        total += np.interp(k * hz, at, power)
+    return total
+
+
+def _share(power: FloatArray, step: float, hz: float, rate_hz: float, n: int) -> float:
+    """Part of the power within the width of the lines of the comb, the spindle's own lines between included."""
+    at = np.arange(len(power)) * step
+    width = 2.5 * rate_hz / n
+    near = np.zeros(len(power), bool)
+    for k in range(1, int(0.5 * rate_hz / hz) + 1):
+        near |= np.abs(at - k * hz) <= width
+    alternating = at > 0.3 * hz
+    total = float(power[alternating].sum())
+    return float(power[near & alternating].sum()) / total if total > 0.0 else 0.0

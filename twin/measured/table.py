@@ -1,0 +1,77 @@
+"""What every reader of a format gives: columns of numbers and what the file says of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from twin.arrays import FloatArray
+from twin.errors import MeasuredError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Table:
+    """Columns of one file, before time and units are understood.
+
+    Attributes:
+        names: of the columns, as in the file.
+        units: of the columns where the file says them apart from the names, else ``""``.
+        values: shape (n, k); NaN where there is no number.
+        rows: shape (n,), line or row number in the file of each row, counted from 1.
+        row_word: what ``rows`` counts: ``line``, ``row``, ``sample``.
+        rate_hz: sampling rate that the file states, or None.
+        start_s: time of the first sample where there is no column of time.
+        named: whether the names are the file's or the user's own, not numbers given here.
+    """
+
+    format: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    values: FloatArray
+    rows: np.ndarray[tuple[int], np.dtype[np.int64]]
+    row_word: str = "row"
+    rate_hz: float | None = None
+    start_s: float = 0.0
+    named: bool = True
+    notes: tuple[str, ...] = field(default=())
+
+
+def table(
+    path: Path,
+    format_name: str,
+    columns: Sequence[tuple[str, str, FloatArray]],
+    *,
+    rate_hz: float | None = None,
+    start_s: float = 0.0,
+    row_word: str = "sample",
+    notes: Sequence[str] = (),
+) -> Table:
+    """A table from columns of equal length.
+
+    Args:
+        columns: name, unit, values.
+
+    Raises:
+        MeasuredError: no columns, or columns of different length.
+    """
+    if not columns:
+        raise MeasuredError(f"{path}: no column of numbers found, expected a time and forces ({format_name})")
+    lengths = {name: len(values) for name, _, values in columns}
+    if len(set(lengths.values())) > 1:
+        told = ", ".join(f"{name} {n}" for name, n in lengths.items())
+        raise MeasuredError(f"{path}: columns of different length: {told}; choose columns of one length by --columns")
+    values = np.column_stack([values.astype(np.float64) for _, _, values in columns])
+    return Table(
+        format=format_name,
+        names=tuple(name for name, _, _ in columns),
+        units=tuple(unit for _, unit, _ in columns),
+        values=values,
+        rows=np.arange(1, len(values) + 1),
+        row_word=row_word,
+        rate_hz=rate_hz,
+        start_s=start_s,
+        notes=tuple(notes),
+    )

@@ -1,0 +1,147 @@
+"""How a text file is laid out: delimiter, decimal mark, first line of numbers. Found by trying, never by suffix."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+
+#: Delimiters that are tried, None for any white space; commas with a blank behind them may stand beside decimal commas.
+_DELIMITERS = ("\t", ";", "|", ",", None)
+_TRIED_LINES = 400
+_MISSING = frozenset(
+    (
+        "",
+        "nan",
+        "+nan",
+        "-nan",
+        "na",
+        "n/a",
+        "#n/a",
+        "#nv",
+        "-",
+        "--",
+        "---",
+        "null",
+        "none",
+        "inf",
+        "-inf",
+        "+inf",
+        "1.#qnan",
+        "-1.#ind",
+    )
+)
+_CLOCK = re.compile(
+    r"^(?:(\d{4})-(\d{1,2})-(\d{1,2})[T ])?(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)(?:Z|[+-]\d{2}:?\d{2})?$"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How fields are set apart.
+
+    Attributes:
+        delimiter: None for white space.
+        decimal: ``.`` or ``,``.
+        width: number of fields in a row of numbers.
+        first: index of the first row of numbers.
+    """
+
+    delimiter: str | None
+    decimal: str
+    width: int
+    first: int
+
+
+def fields_of(line: str, delimiter: str | None) -> list[str]:
+    """A line's fields without blanks and quotes; empty fields behind the last one are dropped."""
+    if delimiter is None:
+        return line.split()
+    if '"' in line:
+        parts = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+    else:
+        parts = line.split(delimiter)
+    parts = [p.strip() for p in parts]
+    while parts and not parts[-1]:
+        parts.pop()
+    return parts
+
+
+def number(text: str, decimal: str) -> float | None:
+    """A field as a number: NaN for what stands for a missing one, None for text; times of day become seconds."""
+    if decimal == ",":
+        if "." in text and "," not in text and not _CLOCK.match(text):
+            return None
+        text = text.replace(".", "").replace(",", ".") if "," in text else text
+    try:
+        value = float(text)
+    except ValueError:
+        if text.lower() in _MISSING:
+            return math.nan
+        return _clock_s(text)
+    return value if math.isfinite(value) and "_" not in text else math.nan if "_" not in text else None
+
+
+def _clock_s(text: str) -> float | None:
+    """Seconds of ``12:30:01.25`` or ``2024-05-01T12:30:01.25``, days counted from 1970."""
+    found = _CLOCK.match(text)
+    if found is None:
+        return None
+    year, month, day, hour, minute, second = found.groups()
+    seconds = 3600.0 * int(hour) + 60.0 * int(minute) + float(second.replace(",", "."))
+    if year is None:
+        return seconds
+    from datetime import date
+
+    try:
+        return seconds + 86400.0 * (date(int(year), int(month), int(day)) - date(1970, 1, 1)).days
+    except ValueError:
+        return None
+
+
+def find_layout(lines: Sequence[str], delimiter: str | None = None, decimal: str | None = None) -> Layout | None:
+    """The layout under which most lines are rows of numbers of one width; None where there are none.
+
+    Args:
+        lines: the file's lines.
+        delimiter: ``""`` for white space, None to find it.
+        decimal: ``.`` or ``,``, None to find it.
+    """
+    delimiters = _DELIMITERS if delimiter is None else (delimiter or None,)
+    decimals = (".", ",") if decimal is None else (decimal,)
+    tries = [_try(lines, d, mark) for mark in decimals for d in delimiters if mark != d]
+    found = [(score, layout) for score, layout in filter(None, tries)]
+    return max(found, key=lambda pair: pair[0])[1] if found else None
+
+
+def _try(lines: Sequence[str], delimiter: str | None, decimal: str) -> tuple[tuple[int, int], Layout] | None:
+    """How many lines are rows of numbers under a layout, and the layout."""
+    widths: Counter[int] = Counter()
+    firsts: dict[int, int] = {}
+    for index, line in islice(_sample(lines), _TRIED_LINES):
+        fields = fields_of(line, delimiter)
+        if fields and is_row(fields, decimal):
+            widths[len(fields)] += 1
+            firsts.setdefault(len(fields), index)
+    if not widths:
+        return None
+    width, count = max(widths.items(), key=lambda item: (item[1], item[0]))
+    return (count, width), Layout(delimiter, decimal, width, firsts[width])
+
+
+def _sample(lines: Sequence[str]) -> list[tuple[int, str]]:
+    """The first lines, where the header is, and some from the middle."""
+    half = _TRIED_LINES // 2
+    head = list(enumerate(lines[:half]))
+    middle = max(half, len(lines) // 2)
+    return head + list(enumerate(lines[middle : middle + half], middle))
+
+
+def is_row(fields: Sequence[str], decimal: str) -> bool:
+    """Whether all fields are numbers or stand for missing ones, and one is a number."""
+    values = [number(f, decimal) for f in fields]
+    return None not in values and any(v is not None and not math.isnan(v) for v in values)

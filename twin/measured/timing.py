@@ -1,0 +1,224 @@
+"""From a table to a raw log: which column is the time, in which unit, and what the sampling rate is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from twin.arrays import FloatArray
+from twin.errors import MeasuredError
+from twin.measured.log import Channel, RawLog, gaps_of, vector
+from twin.measured.table import Table
+from twin.measured.units import ANGLE_NAME, TIME_NAME, find_unit, split_unit
+
+#: A given rate and the one of the time column may differ by so much before it is worth a note.
+_SAME_RATE = 0.01
+#: Rates outside are a sign of a wrong unit of time.
+_PLAUSIBLE_HZ = (20.0, 1e7)
+
+
+def raw_log(path: Path, table: Table, rate_hz: float | None = None, rpm: float | None = None) -> RawLog:
+    """Find the time and make the log.
+
+    Args:
+        rate_hz: sampling rate given by the user; it wins over the file.
+        rpm: makes time of a column of the spindle's angle, where there is none of time.
+
+    Raises:
+        MeasuredError: neither a time column nor a rate; time that goes back; an unknown unit of time.
+    """
+    if rate_hz is not None and not 0.0 < rate_hz < np.inf:
+        raise MeasuredError(f"{path}: sampling rate {rate_hz:g} Hz, expected a number above 0")
+    at, notes = _time_column(table)
+    if at is None and rate_hz is None and rpm is not None and (angle := angle_column(table)) is not None:
+        table = _timed_by_angle(path, table, angle, rpm)
+        at = len(table.names) - 1
+    if at is None:
+        t_s, rate, rows, more = _counted(path, table, rate_hz)
+    else:
+        t_s, rate, rows, more = _from_column(path, table, at, rate_hz)
+    channels = [_channel(table, i, rows) for i in range(len(table.names)) if i != at]
+    log = RawLog(
+        source=path,
+        format=table.format,
+        t_s=vector(t_s, "t_s"),
+        rate_hz=rate,
+        columns={c.name: c for c in channels},
+        notes=(*table.notes, *notes, *more),
+    )
+    return replace(log, notes=(*log.notes, *_gap_notes(log)))
+
+
+def _channel(table: Table, index: int, rows: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Channel:
+    base, unit = split_unit(table.names[index])
+    values = table.values[rows, index].copy()
+    values.flags.writeable = False
+    return Channel(name=table.names[index], base=base, unit=unit or table.units[index], values=values)
+
+
+def _time_column(table: Table) -> tuple[int | None, list[str]]:
+    """Index of the time column, and what was guessed."""
+    marked = [i for i, name in enumerate(table.names) if _is_time(table, i)]
+    if marked:
+        return marked[0], []
+    if len(table.names) < 2 or table.rate_hz is not None:
+        return None, []
+    first = table.values[:, 0]
+    steps = np.diff(first[np.isfinite(first)])
+    even = len(steps) > 2 and steps.min() > 0.0 and np.ptp(steps) < 0.01 * steps.mean() and steps.mean() < 0.5
+    if even and (not table.named or not table.names[0]):
+        return 0, ["first column taken as time in s: it grows evenly and nothing names it"]
+    return None, []
+
+
+def _is_time(table: Table, index: int) -> bool:
+    base, unit = split_unit(table.names[index])
+    known = find_unit(unit or table.units[index])
+    if known is not None:
+        return known[0] == "time" and (TIME_NAME.match(base) is not None or index == 0)
+    return not unit and TIME_NAME.match(base) is not None
+
+
+def angle_column(table: Table) -> int | None:
+    """Index of the only column of an angle, by its unit or name."""
+    found = []
+    for index, name in enumerate(table.names):
+        base, unit = split_unit(name)
+        known = find_unit(unit or table.units[index])
+        if (known is not None and known[0] == "angle") or (known is None and ANGLE_NAME.search(base)):
+            found.append(index)
+    return found[0] if len(found) == 1 else None
+
+
+def _timed_by_angle(path: Path, table: Table, index: int, rpm: float) -> Table:
+    """The table with a column of time behind the others, counted by a spindle angle."""
+    if not rpm > 0.0:
+        raise MeasuredError(f"{path}: spindle speed {rpm:g} rpm, expected a number above 0")
+    name = table.names[index]
+    known = find_unit(split_unit(name)[1] or table.units[index])
+    values = table.values[:, index]
+    size = known[1] if known is not None else 1.0 if np.nanmax(np.abs(values)) < 7.0 else np.pi / 180.0
+    good = np.isfinite(values)
+    turned = np.full(len(values), np.nan)
+    turned[good] = np.unwrap(values[good] * size)
+    t_s = (turned - turned[good][0]) / (2.0 * np.pi * rpm / 60.0)
+    return replace(
+        table,
+        names=(*table.names, "time by angle"),
+        units=(*table.units, "s"),
+        values=np.column_stack([table.values, t_s]),
+        notes=(*table.notes, f"time from the angle in column {name!r} at {rpm:g} rpm"),
+    )
+
+
+def _counted(
+    path: Path, table: Table, rate_hz: float | None
+) -> tuple[FloatArray, float, np.ndarray[tuple[int], np.dtype[np.bool_]], list[str]]:
+    """Times counted by the rate."""
+    rate = rate_hz or table.rate_hz
+    if rate is None and (angle := angle_column(table)) is not None:
+        raise MeasuredError(
+            f"{path}: no column of time, but one of an angle, {table.names[angle]!r}; give the spindle speed by --rpm "
+            "to make time of it, or the sampling rate by --rate HZ"
+        )
+    if rate is None:
+        raise MeasuredError(
+            f"{path}: no column of time among {', '.join(table.names)}; give the sampling rate by --rate HZ, "
+            f"or names for the columns by --columns, e.g. {_example(table)}"
+        )
+    told = "as given" if rate_hz else "as the file says"
+    if rate_hz and table.rate_hz and abs(rate_hz / table.rate_hz - 1.0) > _SAME_RATE:
+        told = f"as given; the file says {table.rate_hz:g} Hz"
+    n = len(table.values)
+    return table.start_s + np.arange(n) / rate, rate, np.ones(n, bool), [f"sampling rate {rate:g} Hz, {told}"]
+
+
+def _example(table: Table) -> str:
+    names = ["t_s", "Fx_N", "Fy_N", "Fz_N"][: len(table.names)]
+    return ",".join([*names, *table.names[len(names) :]])
+
+
+def _from_column(
+    path: Path, table: Table, at: int, rate_hz: float | None
+) -> tuple[FloatArray, float, np.ndarray[tuple[int], np.dtype[np.bool_]], list[str]]:
+    """Times from a column, in s."""
+    base, unit = split_unit(table.names[at])
+    unit = unit or table.units[at]
+    known = find_unit(unit) if unit else ("time", 1.0)
+    if known is None or known[0] != "time":
+        raise MeasuredError(f"{path}: time column {table.names[at]!r} is in {unit!r}, expected s, ms, us, ns or min")
+    t_s = table.values[:, at] * known[1]
+    rows = np.isfinite(t_s)
+    notes = [] if rows.all() else [f"{int((~rows).sum())} rows without a time passed over"]
+    t_s = t_s[rows]
+    if len(t_s) < 2:
+        raise MeasuredError(f"{path}: {len(t_s)} samples, expected at least 2")
+    if t_s[0] > 1e8:
+        notes.append(f"time counted from the first sample, which is at {t_s[0]:.3f} s")
+        t_s = t_s - t_s[0]
+    t_s, rate, more = _steady(path, table, t_s, table.rows[rows], rate_hz)
+    notes += more
+    if not unit and not _PLAUSIBLE_HZ[0] <= rate <= _PLAUSIBLE_HZ[1]:
+        notes.append(f"time column {base!r} has no unit: taken as s, which makes {rate:g} Hz; is it ms?")
+    return t_s, rate, rows, notes
+
+
+def _steady(
+    path: Path, table: Table, t_s: FloatArray, rows: np.ndarray[tuple[int], np.dtype[np.int64]], rate_hz: float | None
+) -> tuple[FloatArray, float, list[str]]:
+    """Strictly increasing times and their rate."""
+    steps = np.diff(t_s)
+    back = np.flatnonzero(steps < 0.0)
+    if len(back):
+        i = int(back[0])
+        raise MeasuredError(
+            f"{path}:{rows[i + 1]}: time goes back, from {t_s[i]:.9g} s to {t_s[i + 1]:.9g} s "
+            f"({table.row_word} {rows[i + 1]}); expected increasing time: split the file there"
+        )
+    if rate_hz is not None:
+        return _at_rate(t_s, steps, rate_hz)
+    if t_s[-1] <= t_s[0]:
+        raise MeasuredError(f"{path}: the time stands still at {t_s[0]:g} s, expected increasing time")
+    if (steps == 0.0).any():
+        rate = (len(t_s) - 1) / (t_s[-1] - t_s[0])
+        if table.rate_hz and abs(rate / table.rate_hz - 1.0) < _SAME_RATE:
+            rate = table.rate_hz
+        note = f"time column too coarse, {int((steps == 0.0).sum())} times stand twice: time counted at {rate:g} Hz"
+        return t_s[0] + np.arange(len(t_s)) / rate, float(rate), [note]
+    rate = _rate_of(steps)
+    notes = [f"sampling rate {rate:.6g} Hz, from the time column"]
+    if table.rate_hz and abs(rate / table.rate_hz - 1.0) > _SAME_RATE:
+        notes.append(f"the file's header says {table.rate_hz:g} Hz")
+    jitter = float(np.median(np.abs(steps - np.median(steps)))) * rate
+    if jitter > 0.05:
+        notes.append(f"uneven sampling: half of the intervals are off by more than {100.0 * jitter:.0f} %")
+    return t_s, rate, notes
+
+
+def _rate_of(steps: FloatArray) -> float:
+    """Samples a second, gaps left out; a rate within rounding of few digits is given with these."""
+    middle = float(np.median(steps))
+    near = steps[steps < 1.75 * middle]
+    rate = 1.0 / float(near.mean())
+    rounded = float(f"{rate:.6g}")
+    return rounded if abs(rate / rounded - 1.0) < 1e-6 else rate
+
+
+def _at_rate(t_s: FloatArray, steps: FloatArray, rate_hz: float) -> tuple[FloatArray, float, list[str]]:
+    """Times counted by the rate that the user gives."""
+    span = float(t_s[-1] - t_s[0])
+    found = (len(t_s) - 1) / span if span > 0.0 else float("nan")
+    notes = [f"sampling rate {rate_hz:g} Hz, as given"]
+    if not abs(found / rate_hz - 1.0) <= _SAME_RATE:
+        notes[0] += f"; the time column makes {found:.6g} Hz and is not used"
+    return t_s[0] + np.arange(len(steps) + 1) / rate_hz, rate_hz, notes
+
+
+def _gap_notes(log: RawLog) -> list[str]:
+    gaps = gaps_of(log.t_s, log.rate_hz)
+    if not gaps:
+        return []
+    told = ", ".join(f"{a:.4f} to {b:.4f} s" for a, b in gaps[:3])
+    return [f"{len(gaps)} gap{'s' if len(gaps) > 1 else ''} in the time: {told}{', ...' if len(gaps) > 3 else ''}"]

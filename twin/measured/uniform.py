@@ -1,0 +1,111 @@
+"""Evenly spaced samples: short gaps bridged, long ones kept as gaps; another rate without aliasing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+from scipy import signal
+
+from twin.arrays import FloatArray, frozen
+from twin.errors import MeasuredError
+from twin.measured.log import Correction, ForceLog, vector
+
+#: Times may stand off an even grid by so much of an interval before the samples are interpolated to it.
+_EVEN = 0.02
+#: Largest numerator and denominator of a ratio of rates.
+_MOST_RATIO = 20000
+_PLAIN_RATIO = 64
+#: Samples of an even grid that may stand for each measured one.
+_MOST_FILL = 20
+
+
+def uniform(log: ForceLog) -> ForceLog:
+    """The log on an even grid of its own rate; where it is uneven or has gaps, linear between its samples.
+
+    Gaps stay in ``gaps``: what is compared leaves them out.
+    """
+    steps = np.diff(log.t_s) * log.rate_hz
+    if np.abs(np.cumsum(steps - 1.0)).max(initial=0.0) < _EVEN:
+        return log
+    count = int(log.duration_s * log.rate_hz + _EVEN) + 1
+    if count > _MOST_FILL * len(log.t_s):
+        raise MeasuredError(
+            f"{log.source}: {len(log.t_s)} samples over {log.duration_s:g} s, expected about {count} at "
+            f"{log.rate_hz:g} Hz: most of the log is missing"
+        )
+    t_s = log.t_s[0] + np.arange(count) / log.rate_hz
+    note = "uneven or missing samples: linear between neighbours on an even grid"
+    return replace(_at(log, t_s), notes=(*log.notes, note))
+
+
+def resample(log: ForceLog, rate_hz: float) -> ForceLog:
+    """The log at another rate, band-limited by a symmetric filter: no aliasing, no delay.
+
+    Args:
+        rate_hz: wanted rate; the nearest ratio of whole numbers up to 20000 is taken.
+
+    Raises:
+        MeasuredError: a rate that is not above 0, or leaves no samples.
+    """
+    if not 0.0 < rate_hz < np.inf:
+        raise MeasuredError(f"rate {rate_hz:g} Hz, expected a number above 0")
+    log = uniform(log)
+    ratio = Fraction(rate_hz / log.rate_hz).limit_denominator(_PLAIN_RATIO)
+    if ratio == 0 or abs(float(ratio) * log.rate_hz / rate_hz - 1.0) > 1e-12:
+        ratio = Fraction(rate_hz / log.rate_hz).limit_denominator(_MOST_RATIO)
+    if ratio == 0 or len(log.t_s) * ratio < 2:
+        raise MeasuredError(f"rate {rate_hz:g} Hz leaves less than 2 of {len(log.t_s)} samples at {log.rate_hz:g} Hz")
+    if ratio == 1:
+        return log
+    got = log.rate_hz * float(ratio)
+    force = signal.resample_poly(log.force_n, ratio.numerator, ratio.denominator, axis=0, padtype="line")
+    t_s = log.t_s[0] + np.arange(len(force)) / got
+    angle = None if log.spindle_angle_rad is None else np.interp(t_s, log.t_s, log.spindle_angle_rad)
+    done = Correction(
+        kind="resample",
+        text=f"resampled from {log.rate_hz:g} Hz to {got:g} Hz, band-limited, without delay",
+        values={"from_hz": log.rate_hz, "to_hz": got},
+    )
+    return replace(
+        log,
+        t_s=vector(t_s, "t_s"),
+        force_n=frozen(force, "force_n", (None, 3)),
+        rate_hz=got,
+        spindle_angle_rad=None if angle is None else vector(angle, "spindle_angle_rad"),
+        corrections=(*log.corrections, done),
+    )
+
+
+def pieces(log: ForceLog) -> Iterator[slice]:
+    """The parts of an even log between its gaps."""
+    start = 0
+    for begin, end in log.gaps:
+        stop = int(np.searchsorted(log.t_s, begin, side="right"))
+        if stop > start:
+            yield slice(start, stop)
+        start = int(np.searchsorted(log.t_s, end, side="left"))
+    if start < len(log.t_s):
+        yield slice(start, len(log.t_s))
+
+
+def outside_gaps(log: ForceLog, t_s: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Shape (n,), which times on the log's clock lie in no gap."""
+    good = np.ones(len(t_s), bool)
+    for begin, end in log.gaps:
+        good &= (t_s <= begin) | (t_s >= end)
+    return good
+
+
+def _at(log: ForceLog, t_s: FloatArray) -> ForceLog:
+    """The log at other times, linear between its samples."""
+    force = np.column_stack([np.interp(t_s, log.t_s, log.force_n[:, axis]) for axis in range(3)])
+    angle = None if log.spindle_angle_rad is None else np.interp(t_s, log.t_s, log.spindle_angle_rad)
+    return replace(
+        log,
+        t_s=vector(t_s, "t_s"),
+        force_n=frozen(force, "force_n", (None, 3)),
+        spindle_angle_rad=None if angle is None else vector(angle, "spindle_angle_rad"),
+    )
