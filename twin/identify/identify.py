@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.compare.align import find_delay
-from twin.errors import IdentifyError
+from twin.errors import CompareError, IdentifyError, MeasuredError
 from twin.identify.axes_hint import other_axes
 from twin.identify.cuts_file import Cut, Cuts, Method
 from twin.identify.doubts import LEAST_FIT, doubts
@@ -49,7 +49,10 @@ def prepare(cuts: Cuts, say: Callable[[str], None] = lambda _: None) -> list[Pre
     made = []
     for cut in cuts.cuts:
         say(f"{cut.name}: {'replaying its job' if cut.job else 'reading' if cut.log else 'mean force'}")
-        made.append(_job_cut(cuts, cut) if cut.job is not None else _straight_cut(cuts, cut))
+        try:
+            made.append(_job_cut(cuts, cut) if cut.job is not None else _straight_cut(cuts, cut))
+        except (MeasuredError, CompareError, IdentifyError) as error:
+            raise IdentifyError(f"{cuts.path}: cut {cut.name}: {error}") from error
     return made
 
 
