@@ -99,7 +99,7 @@ def _straight_cut(cuts: Cuts, cut: Cut) -> Prepared:
     if cut.log is None:
         return Prepared(cut, held_out, model, given_mean(cut, cut.spindle_rpm))
     log = log_of(cut, cut.spindle_rpm)
-    found = find_cut(log.t_s, log.force_n, 60.0 / cut.spindle_rpm)
+    found = find_cut(log.t_s, log.force_n, 60.0 / cut.spindle_rpm, tool.teeth)
     window = straight_window(cut, log, found, reach_mm(model.cut), cut.spindle_rpm, cut.feed_mm_min / 60.0)
     measured = measure(cut, log, found, window, cut.spindle_rpm, tool.teeth, cuts.fit)
     return Prepared(cut, held_out, model.at_speed(cut.feed_mm_min / measured.rpm), measured)
@@ -112,7 +112,7 @@ def _job_cut(cuts: Cuts, cut: Cut) -> Prepared:
     if cut.log is None:
         return Prepared(cut, held_out, run.model(cut.run_window_s or run.cut_s), given_mean(cut, run.rpm))
     log = log_of(cut, run.rpm)
-    found = find_cut(log.t_s, log.force_n, 60.0 / run.rpm)
+    found = find_cut(log.t_s, log.force_n, 60.0 / run.rpm, run.teeth)
     lag_s, why = _lag(cut, run, log)
     run_window = cut.run_window_s
     if run_window is None:

@@ -173,7 +173,7 @@ def test_a_log_over_the_spindles_angle(tmp_path: Path) -> None:
 
 def test_find_cut_tells_air_from_cut_by_the_variation_alone() -> None:
     t, force = entering(4000.0)
-    found = find_cut(t, force + 1e4, 1.0 / 60.0)
+    found = find_cut(t, force + 1e4, 1.0 / 60.0, 2)
     assert found.begins
     assert found.ends
     assert 0.4 < found.cut_s[0] < 0.5
@@ -194,6 +194,27 @@ def test_find_cut_tells_air_from_cut_by_the_variation_alone() -> None:
 )
 def test_how_many_harmonics_are_compared(keys: dict[str, Any], samples: float, count: int) -> None:
     assert harmonic_count(Fit(**keys), 2, 3600.0, samples) == count
+
+
+@pytest.mark.parametrize("noise", [0.3, 1.0])
+def test_a_cut_is_found_in_noise_as_large_as_the_force(noise: float) -> None:
+    t, force = entering(4000.0)
+    size = float(force[(t > 0.65) & (t < 0.95)].std())
+    found = find_cut(t, force + np.random.default_rng(1).normal(0.0, noise * size, force.shape), 1.0 / 60.0, 2)
+    assert 0.4 < found.cut_s[0] < 0.6
+    assert 1.0 < found.cut_s[1] < 1.2
+    assert len(found.air_s) == 2
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.5])
+def test_a_log_of_cut_alone_has_no_air(noise: float) -> None:
+    t, force = log_rows(SIDE, SOME, rate_hz=3170.0, air_s=0.0, cut_s=1.0, phase_rad=0.3)
+    force = force * (1.0 + 0.2 * np.sin(9.0 * t))[:, None]
+    found = find_cut(
+        t, force + np.random.default_rng(1).normal(0.0, noise * float(force.std()), force.shape), 1.0 / 60.0, 2
+    )
+    assert found.air_s == ()
+    assert found.cut_s == pytest.approx((0.0, 1.0), abs=0.01)
 
 
 def test_speed_is_found_to_a_hundredth_of_a_revolution() -> None:
