@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -218,23 +218,12 @@ def _write(found: Comparison, outputs: Outputs) -> None:
 
         _say(outputs, f"Report     {write_report(found, outputs.report)}")
     if outputs.view or outputs.rrd is not None:
+        from twin.compare.store import compared_forces
         from twin.sinks.rerun_compare import show_comparison
 
-        show_comparison(_overlay(found), rrd=outputs.rrd, spawn=outputs.view)
+        show_comparison(compared_forces(found), rrd=outputs.rrd, spawn=outputs.view)
         if outputs.rrd is not None:
             _say(outputs, f"Recording  {outputs.rrd}")
-
-
-def _overlay(found: Comparison) -> Any:
-    from twin.archive.comparison_file import ComparedForces
-
-    forces = ComparedForces(
-        t_s=found.t_s,
-        spindle_angle_rad=found.run.angle_at(found.t_s),
-        measured_n=found.measured_n,
-        simulated_n=found.simulated_n,
-    )
-    return replace(forces)
 
 
 def _say(outputs: Outputs, text: str) -> None:

@@ -14,6 +14,16 @@ def archive_path(run: Path, measured: Path) -> Path:
     return run.with_name(f"{run.stem}.{measured.stem}.compare.mcap")
 
 
+def compared_forces(found: Comparison) -> ComparedForces:
+    """Both forces at the log's samples inside the overlap."""
+    return ComparedForces(
+        t_s=found.t_s,
+        spindle_angle_rad=found.run.angle_at(found.t_s),
+        measured_n=found.measured_n,
+        simulated_n=found.simulated_n,
+    )
+
+
 def archive(found: Comparison, path: Path | None = None) -> Path:
     """Write the file; an earlier comparison of that name is replaced.
 
@@ -21,12 +31,6 @@ def archive(found: Comparison, path: Path | None = None) -> Path:
         ArchiveError: it cannot be written.
     """
     target = path or archive_path(found.run.path, found.log.source)
-    forces = ComparedForces(
-        t_s=found.t_s,
-        spindle_angle_rad=found.run.angle_at(found.t_s),
-        measured_n=found.measured_n,
-        simulated_n=found.simulated_n,
-    )
     heads = {
         "run": found.run.path.name,
         "run_digest": found.run.digest,
@@ -36,5 +40,5 @@ def archive(found: Comparison, path: Path | None = None) -> Path:
         "corrections": "\n".join(c.text for c in found.corrections),
     }
     library = f"machining-twin {found.run.header.twin_version}"
-    write_comparison(target, forces, comparison_object(found), heads, library, force=True)
+    write_comparison(target, compared_forces(found), comparison_object(found), heads, library, force=True)
     return target

@@ -17,6 +17,7 @@ _UNITS: dict[str, tuple[Quantity, float]] = {
     **dict.fromkeys(("min", "minutes"), ("time", 60.0)),
     **dict.fromkeys(("n", "newton", "newtons"), ("force", 1.0)),
     "kn": ("force", 1e3),
+    "un": ("force", 1e-6),
     "dan": ("force", 10.0),
     **dict.fromkeys(("lbf", "lbs", "lb"), ("force", 4.4482216152605)),
     **dict.fromkeys(("kgf", "kp"), ("force", 9.80665)),
