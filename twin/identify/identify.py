@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.compare.align import find_delay
-from twin.errors import IdentifyError
+from twin.errors import CompareError, IdentifyError, MeasuredError
 from twin.identify.axes_hint import other_axes
 from twin.identify.cuts_file import Cut, Cuts, Method
 from twin.identify.doubts import LEAST_FIT, doubts
@@ -49,7 +49,10 @@ def prepare(cuts: Cuts, say: Callable[[str], None] = lambda _: None) -> list[Pre
     made = []
     for cut in cuts.cuts:
         say(f"{cut.name}: {'replaying its job' if cut.job else 'reading' if cut.log else 'mean force'}")
-        made.append(_job_cut(cuts, cut) if cut.job is not None else _straight_cut(cuts, cut))
+        try:
+            made.append(_job_cut(cuts, cut) if cut.job is not None else _straight_cut(cuts, cut))
+        except (MeasuredError, CompareError, IdentifyError) as error:
+            raise IdentifyError(f"{cuts.path}: cut {cut.name}: {error}") from error
     return made
 
 
@@ -96,7 +99,7 @@ def _straight_cut(cuts: Cuts, cut: Cut) -> Prepared:
     if cut.log is None:
         return Prepared(cut, held_out, model, given_mean(cut, cut.spindle_rpm))
     log = log_of(cut, cut.spindle_rpm)
-    found = find_cut(log.t_s, log.force_n, 60.0 / cut.spindle_rpm)
+    found = find_cut(log.t_s, log.force_n, 60.0 / cut.spindle_rpm, tool.teeth)
     window = straight_window(cut, log, found, reach_mm(model.cut), cut.spindle_rpm, cut.feed_mm_min / 60.0)
     measured = measure(cut, log, found, window, cut.spindle_rpm, tool.teeth, cuts.fit)
     return Prepared(cut, held_out, model.at_speed(cut.feed_mm_min / measured.rpm), measured)
@@ -109,7 +112,7 @@ def _job_cut(cuts: Cuts, cut: Cut) -> Prepared:
     if cut.log is None:
         return Prepared(cut, held_out, run.model(cut.run_window_s or run.cut_s), given_mean(cut, run.rpm))
     log = log_of(cut, run.rpm)
-    found = find_cut(log.t_s, log.force_n, 60.0 / run.rpm)
+    found = find_cut(log.t_s, log.force_n, 60.0 / run.rpm, run.teeth)
     lag_s, why = _lag(cut, run, log)
     run_window = cut.run_window_s
     if run_window is None:

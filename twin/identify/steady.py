@@ -4,17 +4,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
 
 from twin.arrays import FloatArray
 
 Span = tuple[float, float]
 
-#: The force must vary so many times more in the cut than in air for air to be told from cut.
-_CONTRAST = 4.0
+#: The force must repeat so many times more in the cut than in air for air to be told from cut.
+_CONTRAST = 2.2
+#: Multiples of the tooth-passing frequency that the force is looked at in.
+_ORDERS = 3
 #: Between the levels of air and cut, where one ends and the other begins.
-_THRESHOLD = 0.15
+_THRESHOLD = 0.25
+#: Revolutions of the running median that takes the scatter off.
+_SMOOTHED = 5
 #: Air nearer than so many revolutions to the cut is left out.
 _CLEAR_REVOLUTIONS = 3
 #: Least revolutions of a stretch of air that is used.
@@ -42,8 +49,8 @@ class Found:
     ends: bool
 
 
-def find_cut(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> Found:
-    """Tell cut from air by how much the force varies within each revolution.
+def find_cut(t_s: FloatArray, force_n: FloatArray, revolution_s: float, teeth: int) -> Found:
+    """Tell cut from air by how much of the force repeats with the spindle in each revolution.
 
     A log that varies alike all through is all cut.
 
@@ -51,7 +58,7 @@ def find_cut(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> Found
         t_s: shape (n,), increasing.
         force_n: shape (n, axes).
     """
-    edges, activity = _activity(t_s, force_n, revolution_s)
+    edges, activity = _activity(t_s, force_n, revolution_s, teeth)
     low, high = np.percentile(activity, 2.0), np.percentile(activity, 95.0)
     whole = (float(t_s[0]), float(t_s[-1]))
     if len(activity) < 3 * _LEAST_AIR or high < _CONTRAST * low:
@@ -82,18 +89,31 @@ def steady_part(found: Found, reach_mm: float, feed_mm_s: float, revolution_s: f
     return (first, last) if last - first >= least else None
 
 
-def _activity(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> tuple[FloatArray, FloatArray]:
-    """Ends of blocks of one revolution, and the standard deviation of the force in each."""
+def _activity(t_s: FloatArray, force_n: FloatArray, revolution_s: float, teeth: int) -> tuple[FloatArray, FloatArray]:
+    """Ends of blocks of one revolution, and how much of the force in each repeats with the spindle and the teeth.
+
+    The RMS of the lowest multiples of the spindle frequency, the mean taken off: noise and zero hardly show in it.
+    """
     count = max(1, int((t_s[-1] - t_s[0]) / revolution_s))
     edges = t_s[0] + revolution_s * np.arange(count + 1)
     at = np.searchsorted(t_s, edges)
     samples = np.maximum(np.diff(at), 1)
     centred = force_n - force_n.mean(axis=0)
-    sums = np.concatenate((np.zeros((1, force_n.shape[1])), np.cumsum(centred, axis=0)))
-    squares = np.concatenate((np.zeros((1, force_n.shape[1])), np.cumsum(centred**2, axis=0)))
-    mean = np.diff(sums[at], axis=0) / samples[:, None]
-    variance = np.diff(squares[at], axis=0) / samples[:, None] - mean**2
-    return edges, np.sqrt(np.maximum(variance, 0.0).sum(axis=1))
+    mean = _block_sums(centred, at) / samples[:, None]
+    most = max(1, min(_ORDERS * teeth, int(0.45 * len(t_s) / count)))
+    turn = np.exp(-2j * np.pi / revolution_s * (t_s - t_s[0]))
+    wave, power = np.ones(len(t_s), dtype=complex), np.zeros(count)
+    for _ in range(most):
+        wave = wave * turn
+        found = _block_sums(centred * wave[:, None], at) - mean * _block_sums(wave[:, None], at)
+        power += 2.0 * (np.abs(found / samples[:, None]) ** 2).sum(axis=1)
+    return edges, np.asarray(np.sqrt(ndimage.median_filter(power, _SMOOTHED, mode="nearest")))
+
+
+def _block_sums(values: NDArray[Any], at: NDArray[np.intp]) -> NDArray[Any]:
+    """Sums of rows between neighbouring places."""
+    sums = np.concatenate((np.zeros((1, values.shape[1]), dtype=values.dtype), np.cumsum(values, axis=0)))
+    return np.asarray(np.diff(sums[at], axis=0))
 
 
 def _contact(

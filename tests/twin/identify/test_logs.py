@@ -11,7 +11,7 @@ import pytest
 from support.cut_logs import QUARTER_TURN, write_log
 from support.edge_integral import SOME, Pass, log_rows
 
-from twin.errors import IdentifyError, MeasuredError
+from twin.errors import IdentifyError
 from twin.identify.cuts_file import Fit
 from twin.identify.harmonics import find_speed, of_samples, of_waveform, to_waveform
 from twin.identify.identify import Prepared, identify, prepare
@@ -100,7 +100,10 @@ def test_a_log_without_air_is_all_cut_and_says_that_its_zero_is_unknown(tmp_path
 
 def test_windows_outside_the_log_and_too_short_ones_are_refused(tmp_path: Path) -> None:
     t, force = log_rows(SIDE, SOME, rate_hz=3000.0, air_s=0.3, cut_s=0.4, phase_rad=0.3)
-    with pytest.raises(MeasuredError, match=r"window 0.5 to 7 s is not in the log, which has 0.0000 to 0.9997 s"):
+    with pytest.raises(
+        IdentifyError,
+        match=r"cuts.toml: cut a: .*log.csv: window 0.5 to 7 s is not in the log, which has 0.0000 to 0.9997 s",
+    ):
         one_cut(tmp_path, SIDE, t, force, window_s=[0.5, 7.0])
     with pytest.raises(
         IdentifyError, match=r"0.51 s has 31 samples, expected a whole revolution: 0.0167 s at 3600 rpm"
@@ -108,6 +111,21 @@ def test_windows_outside_the_log_and_too_short_ones_are_refused(tmp_path: Path) 
         one_cut(tmp_path, SIDE, t, force, window_s=[0.5, 0.51])
     with pytest.raises(IdentifyError, match=r"too short to have a steady part: the tool enters and leaves for 0.19"):
         one_cut(tmp_path, SIDE, t, force)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"map": "x=Fq,y=Fx,z=Fz"}, "cut a: axis map 'x=Fq,y=Fx,z=Fz': no column 'Fq'; columns are Fx_N, Fy_N, Fz_N"),
+        ({"columns": ["t_s", "Fx_N"]}, "cut a: "),
+        ({"unit": "mm"}, "expected a unit of force"),
+    ],
+)
+def test_logs_that_do_not_say_what_is_asked(tmp_path: Path, keys: dict[str, Any], message: str) -> None:
+    t, force = log_rows(SIDE, SOME, rate_hz=2000.0, air_s=0.1, cut_s=0.2, phase_rad=0.3)
+    with pytest.raises(IdentifyError) as caught:
+        one_cut(tmp_path, SIDE, t, force, **keys)
+    assert message in str(caught.value)
 
 
 def test_too_few_samples_for_the_teeth(tmp_path: Path) -> None:
@@ -155,7 +173,7 @@ def test_a_log_over_the_spindles_angle(tmp_path: Path) -> None:
 
 def test_find_cut_tells_air_from_cut_by_the_variation_alone() -> None:
     t, force = entering(4000.0)
-    found = find_cut(t, force + 1e4, 1.0 / 60.0)
+    found = find_cut(t, force + 1e4, 1.0 / 60.0, 2)
     assert found.begins
     assert found.ends
     assert 0.4 < found.cut_s[0] < 0.5
@@ -176,6 +194,27 @@ def test_find_cut_tells_air_from_cut_by_the_variation_alone() -> None:
 )
 def test_how_many_harmonics_are_compared(keys: dict[str, Any], samples: float, count: int) -> None:
     assert harmonic_count(Fit(**keys), 2, 3600.0, samples) == count
+
+
+@pytest.mark.parametrize("noise", [0.3, 1.0])
+def test_a_cut_is_found_in_noise_as_large_as_the_force(noise: float) -> None:
+    t, force = entering(4000.0)
+    size = float(force[(t > 0.65) & (t < 0.95)].std())
+    found = find_cut(t, force + np.random.default_rng(1).normal(0.0, noise * size, force.shape), 1.0 / 60.0, 2)
+    assert 0.4 < found.cut_s[0] < 0.6
+    assert 1.0 < found.cut_s[1] < 1.2
+    assert len(found.air_s) == 2
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.5])
+def test_a_log_of_cut_alone_has_no_air(noise: float) -> None:
+    t, force = log_rows(SIDE, SOME, rate_hz=3170.0, air_s=0.0, cut_s=1.0, phase_rad=0.3)
+    force = force * (1.0 + 0.2 * np.sin(9.0 * t))[:, None]
+    found = find_cut(
+        t, force + np.random.default_rng(1).normal(0.0, noise * float(force.std()), force.shape), 1.0 / 60.0, 2
+    )
+    assert found.air_s == ()
+    assert found.cut_s == pytest.approx((0.0, 1.0), abs=0.01)
 
 
 def test_speed_is_found_to_a_hundredth_of_a_revolution() -> None:
