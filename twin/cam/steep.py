@@ -1,8 +1,8 @@
 """Level lines on steep surfaces, where rows in the plan would lie too far apart on the wall.
 
 Where the tip may go down to a height z is bounded by a line on which the exact height of the drop-cutter is z. Lines
-are traced on a grid, and each of their points is then moved onto the exact boundary by halving. Steepness is that of the
-surface that the tip moves on, whose normals are those of the contacts.
+are traced on a grid, and each of their points is then moved onto the exact boundary by halving. Steepness is that of
+the surface that the tip moves on, whose normals are those of the contacts.
 """
 
 from __future__ import annotations
@@ -26,6 +26,10 @@ _HALVINGS = 12
 _ROUNDS = 4
 #: Cells by which steep places are widened: for level lines, and less for where rows are left out, so that both overlap.
 _WIDER, _LESS = 2, 1
+#: Fewer cells than this are no face, but noise.
+_LEAST_CELLS = 4
+#: Highest and lowest line of a face lie this part of the step within it.
+_INSET = 0.1
 #: A line goes on the one above it where they begin no further apart than this, in cells.
 _SAME_WALL = 4.0
 
@@ -97,19 +101,40 @@ def level_lines(cutter: DropCutter, chart: SteepMap, step_mm: float, tolerance_m
     Returns:
         for each wall its lines, shape (n, 3); closed lines end where they begin.
     """
-    z = chart.z_mm[chart.steep]
-    if not len(z):
-        return
-    low, high = float(z.min()), float(z.max())
-    count = max(1, math.ceil((high - low) / step_mm))
-    tracer = contourpy.contour_generator(chart.x_mm, chart.y_mm, chart.z_mm.T)
-    heights = high - (np.arange(count) + 0.5) * (high - low) / count
-    traced = [(z, run) for z in heights for line in tracer.lines(z) for run in _steep_runs(np.asarray(line), chart)]
+    traced = [found for part in _faces(chart) for found in _traced(part, step_mm)]
     walls: list[list[FloatArray]] = []
     reach = _SAME_WALL * float(chart.x_mm[1] - chart.x_mm[0])
     for line in _exact([run for _, run in traced], np.array([z for z, _ in traced]), cutter, chart, tolerance_mm):
         _append(walls, line, reach)
     yield from walls
+
+
+def _faces(chart: SteepMap) -> Iterator[SteepMap]:
+    """Each connected steep place as a map of its own, no larger than it must be."""
+    labels, _ = ndimage.label(chart.steep, structure=np.ones((3, 3), dtype=np.int8))
+    margin = _WIDER + 2
+    for number, found in enumerate(ndimage.find_objects(labels)):
+        i, j = (
+            slice(max(0, s.start - margin), min(size, s.stop + margin))
+            for s, size in zip(found, labels.shape, strict=True)
+        )
+        own = labels[i, j] == number + 1
+        if min(own.shape) < 2 or np.count_nonzero(own) < _LEAST_CELLS:
+            continue
+        wider = np.asarray(ndimage.binary_dilation(own, structure=np.ones((3, 3), dtype=np.bool_), iterations=_WIDER))
+        yield SteepMap(chart.x_mm[i], chart.y_mm[j], np.ascontiguousarray(chart.z_mm[i, j]), own, wider, own)
+
+
+def _traced(part: SteepMap, step_mm: float) -> Iterator[tuple[float, FloatArray]]:
+    """Lines of a steep place on the grid, from just below its top to just above its foot, with their heights."""
+    z = part.z_mm[part.wider]
+    low, high = float(z.min()), float(z.max())
+    count = max(1, math.ceil((high - low) / step_mm))
+    inset = _INSET * (high - low) / count
+    tracer = contourpy.contour_generator(part.x_mm, part.y_mm, part.z_mm.T)
+    for level in np.linspace(high - inset, low + inset, count + 1).tolist():
+        for line in tracer.lines(level):
+            yield from ((level, run) for run in _steep_runs(np.asarray(line), part))
 
 
 def _steep_runs(line: FloatArray, chart: SteepMap) -> Iterator[FloatArray]:

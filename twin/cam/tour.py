@@ -187,7 +187,7 @@ def _iterate(tour: NDArray[np.int64], back: NDArray[np.int8], rest: tuple[Any, .
     random = 1 + search.seed % 2147483646
     end = None if search.budget_s is None else time.monotonic() + search.budget_s
     while left > 0 and (end is None or time.monotonic() < end):
-        _, random = kernels.iterate(tour, back, *rest, random, min(left, _CHUNK))
+        _, random = kernels.iterate(random, min(left, _CHUNK), tour, back, *rest)
         left -= _CHUNK
 
 

@@ -479,6 +479,8 @@ def _state(
 
 @njit(cache=True, nogil=True)
 def iterate(
+    random: int,
+    iterations: int,
     tour: NDArray[np.int64],
     back: NDArray[np.int8],
     near: NDArray[np.int64],
@@ -489,8 +491,6 @@ def iterate(
     clear: FloatArray,
     grid: FloatArray,
     two_way: bool,
-    random: int,
-    iterations: int,
 ) -> tuple[float, int]:
     """Iterated local search: double-bridges of neighbouring stretches, each kept if it ends shorter, else taken back.
 
