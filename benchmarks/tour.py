@@ -8,6 +8,7 @@ Points are random in a square, the start is a corner, the end is free, and the c
 from __future__ import annotations
 
 import argparse
+import math
 import time
 
 import numpy as np
@@ -21,6 +22,8 @@ _PLAIN = LinkSpeeds(feed_mm_s=1.0, rapid_mm_s=1e-6)
 _FAR_S = 1e9
 #: Units a mm in the other solver, which counts in whole numbers.
 _UNITS = 1000
+#: More points than this would need gigabytes for a table of distances.
+_MOST_IN_TABLE = 4000
 
 
 def length_mm(points: FloatArray, order: FloatArray) -> float:
@@ -44,9 +47,19 @@ def theirs(points: FloatArray, seconds: float) -> tuple[float | None, float]:
     # a last node that costs nothing to reach leaves the end free
     manager = pywrapcp.RoutingIndexManager(n + 1, 1, [0], [n])
     model = pywrapcp.RoutingModel(manager)
-    table = np.zeros((n + 1, n + 1), dtype=np.int64)
-    table[:n, :n] = np.rint(np.linalg.norm(places[:, None] - places[None], axis=2) * _UNITS)
-    model.SetArcCostEvaluatorOfAllVehicles(model.RegisterTransitMatrix(table.tolist()))
+    if n <= _MOST_IN_TABLE:
+        table = np.zeros((n + 1, n + 1), dtype=np.int64)
+        table[:n, :n] = np.rint(np.linalg.norm(places[:, None] - places[None], axis=2) * _UNITS)
+        cost = model.RegisterTransitMatrix(table.tolist())
+    else:
+        x, y = (places[:, i].tolist() for i in (0, 1))
+
+        def distance(i: int, j: int) -> int:
+            a, b = manager.IndexToNode(i), manager.IndexToNode(j)
+            return 0 if n in (a, b) else round(_UNITS * math.hypot(x[a] - x[b], y[a] - y[b]))
+
+        cost = model.RegisterTransitCallback(distance)
+    model.SetArcCostEvaluatorOfAllVehicles(cost)
     wanted = pywrapcp.DefaultRoutingSearchParameters()
     wanted.first_solution_strategy = routing_enums_pb2.FirstSolutionStrategy.PATH_CHEAPEST_ARC
     wanted.local_search_metaheuristic = routing_enums_pb2.LocalSearchMetaheuristic.GUIDED_LOCAL_SEARCH

@@ -452,27 +452,43 @@ def cut_arcs(
         cx, cy, z0, path = arcs[k, 0], arcs[k, 1], arcs[k, 2], arcs[k, 3]
         begin, sweep = arcs[k, 4], arcs[k, 5]
         sx, sy = cx + path * math.cos(begin), cy + path * math.sin(begin)
-        far = path + radius
-        left = max(first_band, int(math.floor((cx - far - frame[0]) / side_x)))
-        right = min(last_band - 1, int(math.floor((cx + far - frame[0]) / side_x)))
-        bottom = max(0, int(math.floor((cy - far - frame[1]) / side_y)))
-        top = min(maxima.shape[1] - 1, int(math.floor((cy + far - frame[1]) / side_y)))
+        ex, ey = arcs[k, 6], arcs[k, 7]
+        low_x, high_x, low_y, high_y = min(sx, ex), max(sx, ex), min(sy, ey), max(sy, ey)
+        for quarter in range(4):
+            turn = quarter * 0.5 * math.pi - begin
+            turn = turn % (2.0 * math.pi) if sweep > 0.0 else (-turn) % (2.0 * math.pi)
+            if turn <= abs(sweep):
+                if quarter == 0:
+                    high_x = cx + path
+                elif quarter == 1:
+                    high_y = cy + path
+                elif quarter == 2:
+                    low_x = cx - path
+                else:
+                    low_y = cy - path
+        left = max(first_band, int(math.floor((low_x - radius - frame[0]) / side_x)))
+        right = min(last_band - 1, int(math.floor((high_x + radius - frame[0]) / side_x)))
+        bottom = max(0, int(math.floor((low_y - radius - frame[1]) / side_y)))
+        top = min(maxima.shape[1] - 1, int(math.floor((high_y + radius - frame[1]) / side_y)))
         for i in range(left, right + 1):
             for j in range(bottom, top + 1):
                 old = maxima[i, j]
                 if old <= underside or old <= z0:
                     continue
                 x, y = frame[0] + i * side_x + reach_x, frame[1] + j * side_y + reach_y
-                near = max(0.0, _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7]) - diagonal)
+                if abs(math.hypot(x - cx, y - cy) - path) > radius + diagonal:
+                    continue
+                near = max(0.0, _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, ex, ey) - diagonal)
                 if near > radius or z0 + _profile(tool, near) >= old:
                     continue
                 largest = -math.inf
                 for a in range(i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])):
                     for b in range(j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])):
-                        x, y = frame[0] + a * frame[2], frame[1] + b * frame[3]
-                        off = _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7])
-                        if off <= radius:
-                            heights[a, b] = min(heights[a, b], max(underside, z0 + _profile(tool, off)))
+                        if heights[a, b] > z0:
+                            x, y = frame[0] + a * frame[2], frame[1] + b * frame[3]
+                            off = _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, ex, ey)
+                            if off <= radius:
+                                heights[a, b] = min(heights[a, b], max(underside, z0 + _profile(tool, off)))
                         largest = max(largest, heights[a, b])
                 maxima[i, j] = largest
 

@@ -111,7 +111,7 @@ def level_lines(cutter: DropCutter, chart: SteepMap, step_mm: float, tolerance_m
 
 def _faces(chart: SteepMap) -> Iterator[SteepMap]:
     """Each connected steep place as a map of its own, no larger than it must be."""
-    labels, _ = ndimage.label(chart.steep, structure=np.ones((3, 3)))
+    labels, _ = ndimage.label(chart.steep, structure=np.ones((3, 3), dtype=np.int8))
     margin = _WIDER + 2
     for number, found in enumerate(ndimage.find_objects(labels)):
         i, j = (
@@ -121,7 +121,7 @@ def _faces(chart: SteepMap) -> Iterator[SteepMap]:
         own = labels[i, j] == number + 1
         if min(own.shape) < 2 or np.count_nonzero(own) < _LEAST_CELLS:
             continue
-        wider = np.asarray(ndimage.binary_dilation(own, structure=np.ones((3, 3)), iterations=_WIDER))
+        wider = np.asarray(ndimage.binary_dilation(own, structure=np.ones((3, 3), dtype=np.bool_), iterations=_WIDER))
         yield SteepMap(chart.x_mm[i], chart.y_mm[j], np.ascontiguousarray(chart.z_mm[i, j]), own, wider, own)
 
 

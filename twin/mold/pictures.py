@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cam.drop_cutter import DropCutter
-from twin.cam.toolpath import ToolPath
+from twin.cam.toolpath import MoveKind, ToolPath
 from twin.mold.chain import MoldChain, Stage, StageResult
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 COLOURS = {"cut": "#3c78c8", "rapid": "#d03c30", "link": "#3a9d5a", "helix": "#e0902a", "ramp": "#e0902a"}
 _OTHER = "#8a50b0"
 _DPI = 120
+#: A move that ends no farther from a level than this belongs to it, mm.
+_AT_MM = 1e-3
 #: Chords of arcs in pictures, mm.
 _CHORD_MM = 0.02
 
@@ -32,7 +34,11 @@ def lines_by_kind(path: ToolPath) -> dict[str, list[FloatArray]]:
 
 
 def draw(chain: MoldChain, stages: Sequence[Stage], folder: Path) -> list[Path]:
-    """One picture a stage: left its path, right the height of what it leaves on the part; returns the files."""
+    """One picture a stage: its path, one level of it in roughing and semi-finishing, and the height of what it leaves.
+
+    Returns:
+        The files, `.png`.
+    """
     from matplotlib.figure import Figure
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -40,16 +46,27 @@ def draw(chain: MoldChain, stages: Sequence[Stage], folder: Path) -> list[Path]:
     files: list[Path] = []
     for stage in stages:
         result = chain.stage(stage)
-        figure = Figure(figsize=(13.0, 5.6), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        draw_path(left, result.path)
-        _draw_rest(figure, right, result, needle)
+        level = None if stage == "finish" else _middle_level(result.path)
+        count = 2 if level is None else 3
+        figure = Figure(figsize=(6.5 * count, 5.6), layout="constrained")
+        axes = figure.subplots(1, count)
+        draw_path(axes[0], result.path)
+        if level is not None:
+            draw_path(axes[1], result.path, level - _AT_MM, level + _AT_MM)
+            axes[1].set_title(f"level at z = {level:.2f} mm")
+        _draw_rest(figure, axes[-1], result, needle)
         minutes = result.time.total_s / 60.0
-        left.set_title(f"{stage}: {result.path.name}, {minutes:.1f} min")
+        axes[0].set_title(f"{stage}: {result.path.name}, {minutes:.1f} min")
         file = folder / f"{chain.job.output.name}_{stage}.png"
         figure.savefig(file, dpi=_DPI)
         files.append(file)
     return files
+
+
+def _middle_level(path: ToolPath) -> float:
+    """The level at half of all cutting moves, from the top."""
+    heights = sorted(float(m.end_mm[2]) for m in path.of_kind(MoveKind.CUT))
+    return heights[len(heights) // 2]
 
 
 def draw_path(axes: Axes, path: ToolPath, low_z_mm: float = -np.inf, high_z_mm: float = np.inf) -> None:
