@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from twin.job import load_job
 from twin.plan.accuracy import sag_mm
 from twin.plan.paths import Ground, plan, prepare
 from twin.plan.replay_job import replay_tables, write_replay_job
-from twin.plan.settings import read_settings, settings_of
+from twin.plan.settings import PathSettings, read_settings, settings_of
 from twin.tools.text import parse_tool
 from twin.verify.deviation import Deviation, Limits, deviation
 from twin.verify.machining import machined
@@ -198,6 +199,32 @@ def test_settings_come_from_a_file(tmp_path: Path) -> None:
         read_settings(file)
     with pytest.raises(ToolPathError, match="cannot be read"):
         read_settings(tmp_path / "none.toml")
+
+
+def test_what_is_left_tells_where_rapids_end() -> None:
+    values = {"strategy": "scan", "stepover_mm": 2.0, "zigzag": False, "climb": False, "region_mm": (4, 1, 12, 5)}
+    whole, ground = made(prism(SLOPE, 0.0, 6.0), **values)
+    known, _ = made(prism(SLOPE, 0.0, 6.0), **values, remaining_mm=0.3)
+    downs = [[m.end_mm[2] for m in p.of_kind(MoveKind.RAPID) if m.end_mm[2] < m.start_mm[2]] for p in (whole, known)]
+    assert min(downs[0]) >= float(ground.stock_mm[1, 2])
+    # one row begins over the floor and has 0.3 mm over it, and the clearance of 1 mm over that
+    assert min(downs[1]) == pytest.approx(1.3, abs=0.1)
+
+
+def test_the_page_has_every_setting() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "paths.md").read_text()
+    rows = re.findall(r"^\| `(\w+)` \| ?(?:`([^`]*)`)? ?\| (.*) \|$", page, flags=re.M)
+    wanted = [
+        (
+            key,
+            ""
+            if field.is_required() or field.default is None
+            else str(field.default).replace("True", "true").replace("False", "false"),
+            field.description,
+        )
+        for key, field in PathSettings.model_fields.items()
+    ]
+    assert rows == wanted
 
 
 def test_the_bound_of_a_pitch_is_that_of_the_slope() -> None:
