@@ -22,9 +22,7 @@ def part(tmp_path: Path) -> Path:
     return write_stl(tmp_path / "part.stl", STEP)
 
 
-def test_a_scan_is_written_replayed_and_verified(
-    part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_a_scan_is_written_replayed_and_verified(part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     out, picture, rrd = tmp_path / "a.nc", tmp_path / "a.png", tmp_path / "a.rrd"
     options = ["-o", str(out), "--plot", str(picture), "--rrd", str(rrd)]
     assert run(["paths", "scan", str(part), *SCAN, *options]) == 0
@@ -47,9 +45,7 @@ def test_a_scan_is_written_replayed_and_verified(
     assert picture.stat().st_size > 10_000 and rrd.stat().st_size > 1_000
 
 
-def test_the_tables_of_verify_say_the_verdict(
-    part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_the_tables_of_verify_say_the_verdict(part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run(["paths", "scan", str(part), *SCAN, "-o", str(tmp_path / "a.nc"), "-q"]) == 0
     assert run(["verify", str(tmp_path / "a.toml"), str(part), "--region", "0.5", "0.5", "1.5", "5.5"]) == 0
     said = capfd.readouterr().out
@@ -143,9 +139,7 @@ def test_a_pitch_too_coarse_for_the_tolerance_is_told(
     assert "pitch_mm = 0.5 may be too coarse" in said and "more than tolerance_mm = 0.001" in said
 
 
-def test_wrong_tolerances_of_verify_are_refused(
-    part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_tolerances_of_verify_are_refused(part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run(["paths", "scan", str(part), *SCAN, "-o", str(tmp_path / "a.nc"), "-q"]) == 0
     assert run(["verify", str(tmp_path / "a.toml"), str(part), "--tolerance", "0"]) == 1
     assert "expected numbers above 0" in capfd.readouterr().err

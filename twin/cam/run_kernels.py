@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-import numpy as np
 
 from twin.arrays import FloatArray
 

@@ -25,8 +25,8 @@ def corner_speeds(
     """Largest speed between each two blocks, and at both ends of the chain, where it is 0.
 
     A corner is rounded by an arc that stands off it by the allowed deviation (junction deviation): with the angle t
-    between the blocks, v^2 = a d sin(t/2) / (1 - sin(t/2)). Short chords of a curve are taken as parts of the circle that
-    touches both: v^2 = a r with r = l / (2 tan(turn / 2)).
+    between the blocks, v^2 = a d sin(t/2) / (1 - sin(t/2)). Short chords of a curve are taken as parts of the circle
+    that touches both: v^2 = a r with r = l / (2 tan(turn / 2)).
 
     Args:
         length, radius, speed, acceleration: of each block, shape (n,); radius inf for a straight one; mm, mm/s, mm/s2.
@@ -64,7 +64,8 @@ def block_times(
     length: FloatArray, speed: FloatArray, acceleration: FloatArray, corner: FloatArray, times: FloatArray
 ) -> None:
     """Time of each block: corner speeds are lowered, backwards and forwards, to what the acceleration allows; then a
-    trapezoid or a triangle for each. ``corner`` is changed."""
+    trapezoid or a triangle for each. ``corner`` is changed.
+    """
     n = len(length)
     for k in range(n - 1, -1, -1):
         corner[k] = min(corner[k], math.sqrt(corner[k + 1] ** 2 + 2.0 * acceleration[k] * length[k]))

@@ -186,9 +186,7 @@ def _above_longer(last: Operation, at: FloatArray, following: Operation, state: 
     longer = following.length_mm - last.length_mm
     if longer > 0.0:
         above = (float(at[0]), float(at[1]), float(at[2]) + longer)
-        yield LinearMotion(
-            place=_NOWHERE, state=state, start_mm=_point(at), end_mm=above, rapid=True, feed_mm_min=0.0
-        )
+        yield LinearMotion(place=_NOWHERE, state=state, start_mm=_point(at), end_mm=above, rapid=True, feed_mm_min=0.0)
 
 
 def _tip_after_change(last: Operation, at: FloatArray, following: Operation) -> FloatArray:
