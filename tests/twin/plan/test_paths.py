@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.small_parts import box, prism, small_torus
+from support.small_parts import box, pocket, prism, small_torus
 
 from twin.cam.drop_cutter import DropCutter
 from twin.cam.sections import slice_part
@@ -144,6 +144,35 @@ def test_contours_are_the_outlines_at_the_radius() -> None:
     for ring in rings:
         gap = np.maximum(np.abs(ring[:, :2] - 4.0) - 4.0, 0.0)
         assert np.hypot(*gap.T) == pytest.approx(2.0, abs=0.002)
+
+
+@pytest.mark.parametrize(("tool", "entry", "climb"), [("flat 4", "helix", True), ("ball 4", "ramp", False)])
+def test_a_pocket_is_cleared_without_a_gouge(tmp_path: Path, tool: str, entry: str, climb: bool) -> None:
+    part = pocket(9.0, 6.0, -2.0, -4.0)
+    path, ground = made(
+        part,
+        strategy="contour",
+        tool=tool,
+        axial_depth_mm=1.0,
+        layers=0,
+        floor_z_mm=-2.0,
+        overhang_mm=0.0,
+        entry=entry,
+        helix_mm=1.0,
+        ramp_deg=10.0,
+        climb=climb,
+        arcs_mm=0.002,
+        radial_depth_mm=1.5,
+    )
+    assert any(True for _ in path.of_kind(MoveKind(entry)))
+    found = replayed(path, ground, part, tmp_path, 0.2, excess_mm=1.0)
+    assert found.worst_gouge_mm < 0.003
+    # a flat tool leaves its radius's share in the four upright corners, a ball in those and along the floor
+    corner = 2.0 * (math.sqrt(2.0) - 1.0)
+    assert 0.5 * corner < found.worst_excess_mm < (corner if tool == "flat 4" else 2.0 * (math.sqrt(3.0) - 1.0)) + 0.05
+    walls = [m.points_mm for m in path.of_kind(MoveKind.CUT) if m.points_mm[0, 2] == -2.0]
+    reach = max(float(np.abs(w[:, :2]).max()) for w in walls)
+    assert reach == pytest.approx(4.0, abs=0.003)
 
 
 def test_a_tool_larger_than_any_pocket_cuts_nothing() -> None:
