@@ -1,9 +1,10 @@
-"""Whole scanning paths of the torus part: slice, rough, finish, write; the finishing path against the exact drop-cutter.
+"""Whole scanning paths of the torus part: slice, rough, finish, write; the finishing path against the drop-cutter.
 
     python -m benchmarks.paths [--pitches 0.25,0.125,0.05]
 
-Conditions are those of the tri-slice paper's Table 1. The finishing path is measured as it is written, thinned, with and
-without arcs, at places 0.02 mm apart along it: vertical distance from the drop-cutter's height on the same triangles.
+Conditions are those of the tri-slice paper's Table 1. The finishing path is measured as it is written, thinned, with
+and without arcs, at places 0.02 mm apart along it: vertical distance from the exact drop-cutter's height on the same
+triangles.
 """
 
 from __future__ import annotations
