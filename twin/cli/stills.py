@@ -21,6 +21,8 @@ _COLORS: dict[MoveKind, tuple[int, int, int]] = {
     MoveKind.RETRACT: (150, 150, 160),
 }
 _PART = (170, 176, 184)
+#: Places that are named in the scene.
+_NAMED = 12
 #: Colours from gouge over right to excess.
 _MAP = np.array([(178, 24, 43), (239, 138, 98), (235, 235, 235), (103, 169, 207), (33, 102, 172)], dtype=np.float64)
 
@@ -61,7 +63,7 @@ def deviation_still(found: Deviation, part: Solid, title: str) -> Still:
         colors=deviation_colors(found.deviation_mm, max(found.tolerance_mm, found.excess_mm)),
         radius_mm=0.5 * found.pitch_mm,
     )
-    worst = found.places[:50]
+    worst = found.places[:_NAMED]
     named = StillPoints(
         entity="places",
         points_mm=np.array([p.point_mm for p in worst]).reshape(-1, 3),

@@ -17,7 +17,7 @@ from twin.sinks.rerun_file import RecordingFile
 #: Not that of runs, so that a viewer does not lay one out as the other.
 _APPLICATION = "twin_scene"
 #: What is seen of a scene from the front right above, in multiples of its size.
-_EYE = np.array((0.75, -1.1, 0.8))
+_EYE = np.array((0.5, -0.75, 0.55))
 
 Colors = NDArray[np.uint8]
 
