@@ -261,4 +261,8 @@ def test_the_bound_of_a_pitch_is_that_of_the_slope() -> None:
     # slices normal to x meet the slope at pitch / cos(30 deg)
     apart = 0.5 / math.cos(math.radians(DEG))
     assert sag_mm(part, ball, 0.5, 0) == pytest.approx(2.0 - math.sqrt(4.0 - 0.25 * apart**2), rel=1e-6)
-    assert sag_mm(box((0, 0, 0), (1, 1, 1)), ball, 0.5, 2) == pytest.approx(2.0 - math.sqrt(4.0 - 0.0625))
+    # faces along the axis are the same on all slices, those across it are exact
+    assert sag_mm(box((0, 0, 0), (1, 1, 1)), ball, 0.5, 2) == 0.0
+    # a face that lies nearly across the axis is known to the pitch
+    flat = prism([(0, -2), (20, -2), (20, 0.2), (0, 0)], 0.0, 20.0)
+    assert sag_mm(flat, ball, 0.05, 2) == pytest.approx(0.05, rel=1e-3)
