@@ -6,7 +6,7 @@ python -m benchmarks
 import subprocess
 import sys
 
-STAGES = ("speed", "surface", "replay", "removal", "archive", "gcode", "offset", "drop_cutter", "dexel")
+STAGES = ("speed", "surface", "replay", "removal", "archive", "gcode", "offset", "paths", "drop_cutter", "dexel")
 
 if __name__ == "__main__":
     for stage in STAGES:

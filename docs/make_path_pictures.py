@@ -20,6 +20,7 @@ SMALL = make_torus.Profile(ring_mm=6.0, tube_mm=2.0, outer_mm=1.5, inner_mm=1.0,
 
 
 def main() -> None:
+    """Makes the part, its paths and their pictures."""
     with tempfile.TemporaryDirectory() as folder:
         stl, out, job = (str(Path(folder) / name) for name in ("torus.stl", "torus.nc", "torus.toml"))
         make_torus.write_stl(stl, make_torus.torus(256, 96, SMALL))

@@ -51,42 +51,42 @@ def paths(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="NC program to write.", show_default=False)],
     tool: Annotated[str | None, _option("Tool: 'ball 8', 'flat 10', 'bull 12 r2'.", metavar="TOOL")] = None,
     settings: Annotated[Path | None, _option("TOML file with any of the settings.", metavar="FILE")] = None,
-    pitch: Annotated[float | None, _option("Distance of the part's slices, mm [0.1].")] = None,
-    tolerance: Annotated[float | None, _option("Accuracy wanted, mm [0.02].")] = None,
-    stepover: Annotated[float | None, _option("scan: distance of the rows, mm [0.5].")] = None,
-    allowance: Annotated[float | None, _option("Material to leave on the part, mm [0].")] = None,
-    layers: Annotated[int | None, _option("Layers [1]; contour: 0 for as many as clear the stock.")] = None,
+    pitch: Annotated[float | None, _option("Distance of the part's slices, mm (0.1).")] = None,
+    tolerance: Annotated[float | None, _option("Accuracy wanted, mm (0.02).")] = None,
+    stepover: Annotated[float | None, _option("scan: distance of the rows, mm (0.5).")] = None,
+    allowance: Annotated[float | None, _option("Material to leave on the part, mm (0).")] = None,
+    layers: Annotated[int | None, _option("Layers (1); contour: 0 for as many as clear the stock.")] = None,
     axial_depth: Annotated[
-        float | None, _option("scan: depth of a layer; contour: distance of the levels, mm [1].")
+        float | None, _option("scan: depth of a layer; contour: distance of the levels, mm (1).")
     ] = None,
-    radial_depth: Annotated[float | None, _option("contour: distance of the layers, mm [0.4 of the diameter].")] = None,
-    direction: Annotated[Axis | None, _option("scan: axis that rows run along [x].")] = None,
+    radial_depth: Annotated[float | None, _option("contour: distance of the layers, mm (0.4 of the diameter).")] = None,
+    direction: Annotated[Axis | None, _option("scan: axis that rows run along (x).")] = None,
     zigzag: Annotated[
-        bool | None, _option("scan: rows to and fro, or all one way [zigzag].", "--zigzag/--one-way")
+        bool | None, _option("scan: rows to and fro, or all one way (zigzag).", "--zigzag/--one-way")
     ] = None,
-    climb: Annotated[bool | None, _option("Climb or conventional milling [climb].", "--climb/--conventional")] = None,
+    climb: Annotated[bool | None, _option("Climb or conventional (climb).", "--climb/--conventional")] = None,
     region: Annotated[
         tuple[float, float, float, float] | None,
-        _option("Where the tip may be: X0 Y0 X1 Y1 [the box of part or stock]."),
+        _option("Where the tip may be: X0 Y0 X1 Y1 (the box of part or stock)."),
     ] = None,
-    overhang: Annotated[float | None, _option("How far beyond it, mm [scan 0, contour the tool's radius].")] = None,
-    floor_z: Annotated[float | None, _option("Lowest tip, mm [the part's lowest point].")] = None,
+    overhang: Annotated[float | None, _option("How far beyond it, mm (scan 0, contour the tool's radius).")] = None,
+    floor_z: Annotated[float | None, _option("Lowest tip, mm (the part's lowest point).")] = None,
     stock: Annotated[
-        tuple[float, float, float, float, float, float] | None, _option("Stock: X0 Y0 Z0 X1 Y1 Z1 [the part's box].")
+        tuple[float, float, float, float, float, float] | None, _option("Stock: X0 Y0 Z0 X1 Y1 Z1 (the part's box).")
     ] = None,
-    remaining: Annotated[float | None, _option("Material left on the part before, mm [all of the stock].")] = None,
-    arcs: Annotated[float | None, _option("Fit arcs within this tolerance, mm [none].")] = None,
-    feed: Annotated[float | None, _option("Feed of cuts, mm/min [600].")] = None,
-    plunge_feed: Annotated[float | None, _option("Feed down, mm/min [200].")] = None,
-    spindle: Annotated[float | None, _option("Spindle speed, rpm [3600].")] = None,
-    safe_z: Annotated[float | None, _option("Height of rapids, mm [5 above the stock].")] = None,
-    clearance: Annotated[float | None, _option("Above material, where rapids end, mm [1].")] = None,
-    entry: Annotated[EntryWay | None, _option("Way into material [ramp].")] = None,
-    lead: Annotated[float | None, _option("Radius of leads, mm [0, none].")] = None,
-    tool_number: Annotated[int | None, _option("T and H word [1].")] = None,
-    dialect: Annotated[Control | None, _option("Control [fanuc].")] = None,
+    remaining: Annotated[float | None, _option("Material left on the part before, mm (all of the stock).")] = None,
+    arcs: Annotated[float | None, _option("Fit arcs within this tolerance, mm (none).")] = None,
+    feed: Annotated[float | None, _option("Feed of cuts, mm/min (600).")] = None,
+    plunge_feed: Annotated[float | None, _option("Feed down, mm/min (200).")] = None,
+    spindle: Annotated[float | None, _option("Spindle speed, rpm (3600).")] = None,
+    safe_z: Annotated[float | None, _option("Height of rapids, mm (5 above the stock).")] = None,
+    clearance: Annotated[float | None, _option("Above material, where rapids end, mm (1).")] = None,
+    entry: Annotated[EntryWay | None, _option("Way into material (ramp).")] = None,
+    lead: Annotated[float | None, _option("Radius of leads, mm (0, none).")] = None,
+    tool_number: Annotated[int | None, _option("T and H word (1).")] = None,
+    dialect: Annotated[Control | None, _option("Control (fanuc).")] = None,
     job_file: Annotated[
-        Path | None, _option("Job file that replays the program [beside it, .toml].", "--job-file", metavar="FILE")
+        Path | None, _option("Job file that replays the program (beside it, .toml).", "--job-file", metavar="FILE")
     ] = None,
     plot: Annotated[Path | None, _option("Picture of the path, .png, .svg or .pdf.", metavar="FILE")] = None,
     rrd: Annotated[Path | None, _option("Path and part as a rerun recording.", metavar="FILE")] = None,
