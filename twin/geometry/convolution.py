@@ -17,8 +17,9 @@ from twin.geometry.shapes import Shape, Shapes
 
 #: Neighbours compared at a time.
 _PAIRS = 16
-#: What a Hausdorff distance at vertices, and an arc of few chords, may lack.
-_SLACK, _LEAST_MM = 1.02, 1e-6
+#: Least radius that a section is inflated by to hold its neighbour, mm; how often it is doubled, and then halved.
+_LEAST_MM = 1e-4
+_DOUBLINGS, _HALVINGS = 9, 3
 #: From heights above a plane to radii, NaN out of reach.
 Radii: TypeAlias = Callable[[FloatArray], FloatArray]
 
@@ -71,8 +72,8 @@ def margins(shapes: Shapes, edges: Shapes, pool: ThreadPoolExecutor) -> tuple[Fl
 
     A section inflated by r lies inside of its neighbour inflated by q as soon as r - q is not above the margin: where
     the section is inside, the margin is its distance from the neighbour's boundary; where it stands out, minus the
-    radius that the neighbour must be inflated by to hold it, here a little more (arcs of few chords, Hausdorff distance
-    at vertices, checked by inflating). Jumps have no such radius that is small, and so are kept.
+    radius that the neighbour must be inflated by to hold it, found by trying, up to a tenth too large. Sections at
+    jumps are not left out: there is no such radius, or a large one.
 
     Returns:
         margins of each section in the next, and of each in the last one before it; -inf where there is none.
@@ -85,24 +86,39 @@ def margins(shapes: Shapes, edges: Shapes, pool: ThreadPoolExecutor) -> tuple[Fl
         after = slice(pairs.start + 1, pairs.stop + 1)
         same = np.array([a is b for a, b in zip(shapes[pairs], shapes[after], strict=True)], dtype=bool)
         apart = shapely.distance(edges[pairs], edges[after])
-        far = _SLACK * shapely.hausdorff_distance(edges[pairs], edges[after]) + _LEAST_MM
-        up[pairs] = _margins_one_way(shapes[pairs], shapes[after], same, apart, far)
-        down[after] = _margins_one_way(shapes[after], shapes[pairs], same, apart, far)
+        apart = np.where(same, 0.0, np.nan_to_num(apart, nan=0.0))
+        up[pairs] = _margins_one_way(shapes[pairs], shapes[after], same, apart)
+        down[after] = _margins_one_way(shapes[after], shapes[pairs], same, apart)
 
     list(pool.map(some, range(0, len(shapes) - 1, _PAIRS)))
     return up, down
 
 
-def _margins_one_way(
-    shapes: Shapes, others: Shapes, same: NDArray[np.bool_], apart: FloatArray, far: FloatArray
-) -> FloatArray:
+def _margins_one_way(shapes: Shapes, others: Shapes, same: NDArray[np.bool_], apart: FloatArray) -> FloatArray:
     found = np.full(len(shapes), -np.inf)
     inside = same | shapely.covers(others, shapes)
-    found[inside] = np.where(same, 0.0, np.nan_to_num(apart, nan=0.0))[inside]
-    out = np.flatnonzero(~inside & np.isfinite(far))
-    held = shapely.covers(shapely.buffer(others[out], far[out]), shapes[out])
-    found[out[held]] = -far[out[held]]
+    found[inside] = apart[inside]
+    out = np.flatnonzero(~inside & ~shapely.is_empty(others))
+    found[out] = -_holding(shapes[out], others[out], apart[out])
     return found
+
+
+def _holding(shapes: Shapes, others: Shapes, apart: FloatArray) -> FloatArray:
+    """Radius by which each of the others must be inflated to hold a shape, up to a tenth more; inf where it is large.
+
+    Doubled from a little above the distance of the boundaries until it does, then halved.
+    """
+    fails, holds = np.zeros(len(shapes)), np.full(len(shapes), np.inf)
+    radius = 1.05 * apart + _LEAST_MM
+    for step in range(_DOUBLINGS + _HALVINGS):
+        todo = np.flatnonzero(~np.isfinite(holds) if step < _DOUBLINGS else (fails > 0.0) & np.isfinite(holds))
+        held = np.zeros(len(shapes), dtype=bool)
+        held[todo] = shapely.covers(shapely.buffer(others[todo], radius[todo]), shapes[todo])
+        holds[held] = radius[held]
+        missed = np.setdiff1d(todo, np.flatnonzero(held))
+        fails[missed] = radius[missed]
+        radius = np.where(np.isfinite(holds), np.sqrt(fails * np.where(np.isfinite(holds), holds, 0.0)), 2.0 * radius)
+    return holds
 
 
 def needed(radius_mm: FloatArray, up: FloatArray, down: FloatArray) -> NDArray[np.bool_]:
