@@ -37,7 +37,7 @@ from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
 TOOL = "ball 8"
 RADIUS_MM = 4.0
 HALF_MM = 30.0
-#: Least distance of the places along a row; it is the pitch where that is larger.
+#: Distance of the places along a row, before it is made finer.
 PLACES_MM = 0.05
 FLOOR_MM = -10.0
 ROWS_MM = np.linspace(-HALF_MM, HALF_MM, 241)
@@ -81,10 +81,10 @@ def write_torus(path: Path) -> None:
     module.write_stl(path, module.torus())
 
 
-def paths(profiles: Profiles, pitch: float, repeats: int) -> tuple[list[np.ndarray], Cost, Cost]:
+def paths(profiles: Profiles, repeats: int) -> tuple[list[np.ndarray], Cost, Cost]:
     """The finishing path, and costs of roughing and finishing."""
     tool = StructuringElement.tool(parse_tool(TOOL))
-    places = Places.between(-HALF_MM, HALF_MM, max(PLACES_MM, pitch))
+    places = Places.between(-HALF_MM, HALF_MM, PLACES_MM)
     rough = np.linspace(-HALF_MM, HALF_MM, 31)
 
     def layers() -> None:
@@ -115,7 +115,7 @@ def at_pitch(stl: Path, pitch: float) -> dict[str, Any]:
     slices, _ = timed(lambda: mesh_slices(mesh, pitch), repeats)
     part = slice_part(mesh, pitch)
     prepared, profiles = timed(lambda: Profiles.of(part.sections(1)), repeats)
-    lines, roughing, finishing = paths(profiles, pitch, repeats)
+    lines, roughing, finishing = paths(profiles, repeats)
     costs = {
         "load": load,
         "slices_3_directions": slices,
