@@ -3,8 +3,9 @@
     python examples/torus/run.py [--coarse] [--out FOLDER]
 
 Conditions are those of Kaneko et al., Table 1: an R4 ball along y, one way; five layers of roughing 2 mm deep and 2 mm
-apart with 0.1 mm left, then finishing 0.25 mm apart. ``--coarse`` has larger steps and slices and no forces, to be done in a minute.
-Everything lands in the folder, ``examples/torus/recordings`` if not given: NC program, job file, pictures, recordings.
+apart with 0.1 mm left, then finishing 0.25 mm apart. ``--coarse`` has larger steps and slices and no forces, to be done
+in a minute. Everything lands in the folder, ``examples/torus/recordings`` if not given: NC program, job file, pictures,
+recordings.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.small_parts import prism, prism_corners, write_stl
+from support.small_parts import pocket, prism, prism_corners, write_stl
 
 from gcode.cli.run import run as gcode
 from twin.cli.run import run
@@ -92,6 +92,16 @@ def test_mistakes_are_one_message_and_leave_nothing(
     said = capfd.readouterr().err
     assert said.startswith("error: ") and message in said and "Traceback" not in said
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_tool_larger_than_any_pocket_is_said_and_no_file_is_written(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    part = write_stl(tmp_path / "pocket.stl", pocket(9.0, 3.0, -2.0, -4.0))
+    options = ["--tool", "flat 8", "--pitch", "0.5", "--floor-z", "-2", "--overhang", "0", "--layers", "0"]
+    assert run(["paths", "contour", str(part), *options, "-o", str(tmp_path / "a.nc")]) == 1
+    assert "flat D8 can cut nothing of this stock: no pocket is wide enough" in capfd.readouterr().err
+    assert [p.name for p in tmp_path.iterdir()] == ["pocket.stl"]
 
 
 def test_files_that_are_there_are_kept(part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,4 @@
-"""The chain to compare with: scanning lines throughout, air cuts left out, rows in their order (the mold paper, section 3).
+"""The chain to compare with: scanning lines throughout, air cuts left out (the mold paper, section 3).
 
 Every level is covered by rows along x. Neighbouring rows are joined on the level where nothing is in the
 way; else the tool goes up and plunges.

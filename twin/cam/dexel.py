@@ -23,6 +23,8 @@ from twin.errors import StockError
 from twin.motion.path import Move
 from twin.tools.shape import ToolShape
 
+#: Strokes that are not worth several threads.
+_FEW = 64
 #: Most dexels a model may have.
 _MOST = 400_000_000
 
@@ -121,15 +123,15 @@ class Dexels:
         """
         shape = tool.parameters
         rows = self._maxima.shape[0]
-        bounds = [rows * k // PARTS for k in range(PARTS + 1)]
+        parts = PARTS if len(strokes.starts_mm) + len(strokes.arcs) > _FEW else 1
+        bounds = [rows * k // parts for k in range(parts + 1)]
         bands = [(a, b) for a, b in pairwise(bounds) if b > a]
-        stock = (self.heights_mm, self._maxima, self.frame_mm, shape)
+        stock = (self.heights_mm, self._maxima, self.frame_mm, self.floor_mm, shape)
         run_all(
             [partial(kernels.cut_lines, *stock, strokes.starts_mm, strokes.ends_mm, *band) for band in bands], threads
         )
-        run_all([partial(kernels.cut_arcs, *stock, strokes.arcs, *band) for band in bands], threads)
-        np.maximum(self.heights_mm, self.floor_mm, out=self.heights_mm)
-        np.maximum(self._maxima, self.floor_mm, out=self._maxima)
+        if len(strokes.arcs):
+            run_all([partial(kernels.cut_arcs, *stock, strokes.arcs, *band) for band in bands], threads)
 
     def cut_moves(
         self,

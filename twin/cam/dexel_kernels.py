@@ -109,6 +109,10 @@ def block_maxima(heights: FloatArray, maxima: FloatArray) -> None:
 @njit(cache=True, nogil=True)
 def _ball_block(
     heights: FloatArray,
+    i0: int,
+    i1: int,
+    j0: int,
+    j1: int,
     ex0: float,
     ey0: float,
     pitch_x: float,
@@ -118,6 +122,7 @@ def _ball_block(
     dz: float,
     centre: float,
     radius: float,
+    bottom: float,
     largest: FloatArray,
 ) -> None:
     """Cut one block by a ball on a line; e is the first dexel seen from the start, ``centre`` the ball's start height.
@@ -133,9 +138,10 @@ def _ball_block(
         centre = centre + min(0.0, dz)
         dz = 0.0
     r2 = radius * radius
-    for i in range(heights.shape[0]):
+    for i in range(i1 - i0):
+        row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
-        for j in range(heights.shape[1]):
+        for j in range(len(row)):
             ey = ey0 + j * pitch_y
             cross = ex * dy - ey * dx
             away = cross * cross * inverse if square > 0.0 else ex * ex + ey * ey
@@ -147,16 +153,20 @@ def _ball_block(
             last = min(1.0, middle + root * root_inverse)
             t = min(max(middle - lead * root, first), last)
             off = t - middle
-            z = centre + dz * t - math.sqrt(max(0.0, inside - square * off * off))
-            old = heights[i, j]
+            z = max(bottom, centre + dz * t - math.sqrt(max(0.0, inside - square * off * off)))
+            old = row[j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
-            heights[i, j] = new
+            row[j] = new
             largest[j] = max(largest[j], new)
 
 
 @njit(cache=True, nogil=True)
 def _flat_block(
     heights: FloatArray,
+    i0: int,
+    i1: int,
+    j0: int,
+    j1: int,
     ex0: float,
     ey0: float,
     pitch_x: float,
@@ -166,6 +176,7 @@ def _flat_block(
     dz: float,
     tip: float,
     radius: float,
+    bottom: float,
     largest: FloatArray,
 ) -> None:
     """Cut one block by a flat tool on a line: the lower end of the time in which its disc covers the dexel."""
@@ -175,9 +186,10 @@ def _flat_block(
         tip = tip + min(0.0, dz)
         dz = 0.0
     r2 = radius * radius
-    for i in range(heights.shape[0]):
+    for i in range(i1 - i0):
+        row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
-        for j in range(heights.shape[1]):
+        for j in range(len(row)):
             ey = ey0 + j * pitch_y
             cross = ex * dy - ey * dx
             away = cross * cross * inverse if square > 0.0 else ex * ex + ey * ey
@@ -186,16 +198,20 @@ def _flat_block(
             middle = (ex * dx + ey * dy) * inverse
             first = max(0.0, middle - half)
             last = min(1.0, middle + half)
-            z = tip + dz * (first if dz > 0.0 else last)
-            old = heights[i, j]
+            z = max(bottom, tip + dz * (first if dz > 0.0 else last))
+            old = row[j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
-            heights[i, j] = new
+            row[j] = new
             largest[j] = max(largest[j], new)
 
 
 @njit(cache=True, nogil=True)
 def _round_block(
     heights: FloatArray,
+    i0: int,
+    i1: int,
+    j0: int,
+    j1: int,
     ex0: float,
     ey0: float,
     pitch_x: float,
@@ -205,22 +221,24 @@ def _round_block(
     dz: float,
     tip: float,
     tool: FloatArray,
+    bottom: float,
     largest: FloatArray,
 ) -> None:
     """Cut one block by any tool on a line; the place along it is searched only where the sweep can be low enough."""
     square = dx * dx + dy * dy
     length = math.sqrt(square)
     radius = tool[6]
-    for i in range(heights.shape[0]):
+    for i in range(i1 - i0):
+        row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
-        for j in range(heights.shape[1]):
+        for j in range(len(row)):
             ey = ey0 + j * pitch_y
-            old = heights[i, j]
+            old = row[j]
             largest[j] = max(largest[j], old)
             if square == 0.0:
                 away = math.sqrt(ex * ex + ey * ey)
                 if away <= radius:
-                    heights[i, j] = min(old, tip + min(0.0, dz) + _profile(tool, away))
+                    row[j] = min(old, max(bottom, tip + min(0.0, dz) + _profile(tool, away)))
                 continue
             q = abs(ex * dy - ey * dx) / length
             rest = radius * radius - q * q
@@ -252,7 +270,51 @@ def _round_block(
                         s = min(max(-s if slope > 0.0 else s, low), high)
             z = tip + (foot + s) * slope + _profile(tool, min(radius, math.sqrt(q * q + s * s)))
             if z < old:
-                heights[i, j] = z
+                row[j] = max(bottom, z)
+
+
+@njit(cache=True, nogil=True)
+def _reached(
+    maxima: FloatArray,
+    near: NDArray[np.bool_],
+    bottom: int,
+    top: int,
+    ex: float,
+    ey0: float,
+    side_y: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    z0: float,
+    inverse: float,
+    window: float,
+    diagonal: float,
+    underside: float,
+    tool: FloatArray,
+) -> None:
+    """Which blocks of one row a tool on a line may reach: those nearer than its radius at the block's largest height.
+
+    Args:
+        maxima: largest height of each block of the row.
+        near: filled from ``bottom`` to ``top``.
+        ex, ey0: centre of the row's first block, seen from the start.
+        inverse: 1 / square of the level length, 0 for none.
+        window: part of the line within which the tool's reach covers some of a block.
+    """
+    down = min(0.0, dz) if inverse == 0.0 else 0.0
+    for j in range(bottom, top + 1):
+        ey = ey0 + j * side_y
+        middle = (ex * dx + ey * dy) * inverse
+        t = min(max(middle, 0.0), 1.0)
+        off_x, off_y = ex - t * dx, ey - t * dy
+        at = middle - window if dz > 0.0 else middle + window
+        lowest = z0 + down + (dz * min(max(at, 0.0), 1.0) if inverse > 0.0 else 0.0)
+        over = maxima[j] - lowest
+        arc = min(max(over, 0.0), tool[4])
+        wide = tool[0] + math.sqrt(max(0.0, arc * (2.0 * tool[1] - arc))) + max(0.0, over - tool[4]) * tool[2]
+        reach = min(wide, tool[6]) + diagonal
+        away = off_x * off_x + off_y * off_y
+        near[j] = (over > 0.0) & (maxima[j] > underside) & (away <= reach * reach)
 
 
 @njit(cache=True, nogil=True)
@@ -260,6 +322,7 @@ def cut_lines(
     heights: FloatArray,
     maxima: FloatArray,
     frame: FloatArray,
+    underside: float,
     tool: FloatArray,
     starts: FloatArray,
     ends: FloatArray,
@@ -272,6 +335,7 @@ def cut_lines(
         heights: shape (nx, ny), in place.
         maxima: shape (blocks along x, blocks along y), largest height of each block, kept.
         frame: x and y of the first dexel, pitch along x and y.
+        underside: height that no dexel goes below.
         starts, ends: shape (k, 3), tool tip.
     """
     radius = tool[6]
@@ -281,6 +345,7 @@ def cut_lines(
     reach_x, reach_y = 0.5 * (BLOCK - 1) * frame[2], 0.5 * (BLOCK - 1) * frame[3]
     diagonal = math.hypot(reach_x, reach_y) * (1.0 + 1e-12)
     largest = np.empty(BLOCK)
+    near = np.empty(maxima.shape[1], dtype=np.bool_)
     for k in range(len(starts)):
         x0, y0, z0 = starts[k, 0], starts[k, 1], starts[k, 2]
         dx, dy, dz = ends[k, 0] - x0, ends[k, 1] - y0, ends[k, 2] - z0
@@ -293,35 +358,73 @@ def cut_lines(
         window = (radius + diagonal) * math.sqrt(inverse)
         for i in range(left, right + 1):
             ex0 = frame[0] + i * side_x - x0
+            _reached(
+                maxima[i],
+                near,
+                bottom,
+                top,
+                ex0 + reach_x,
+                frame[1] + reach_y - y0,
+                side_y,
+                dx,
+                dy,
+                dz,
+                z0,
+                inverse,
+                window,
+                diagonal,
+                underside,
+                tool,
+            )
             for j in range(bottom, top + 1):
-                old = maxima[i, j]
-                if old <= z0 and old <= z0 + dz:
+                if not near[j]:
                     continue
                 ey0 = frame[1] + j * side_y - y0
-                ex, ey = ex0 + reach_x, ey0 + reach_y
-                middle = (ex * dx + ey * dy) * inverse
-                t = min(max(middle, 0.0), 1.0)
-                away2 = (ex - t * dx) ** 2 + (ey - t * dy) ** 2
-                if away2 > (radius + diagonal) ** 2:
-                    continue
-                lowest = z0
-                if square == 0.0:
-                    lowest += min(0.0, dz)
-                elif dz > 0.0:
-                    lowest += dz * min(max(middle - window, 0.0), 1.0)
-                else:
-                    lowest += dz * min(max(middle + window, 0.0), 1.0)
-                near = max(0.0, math.sqrt(away2) - diagonal)
-                if lowest + _profile(tool, min(near, radius)) >= old:
-                    continue
-                block = heights[i * BLOCK : (i + 1) * BLOCK, j * BLOCK : (j + 1) * BLOCK]
+                i0, i1 = i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])
+                j0, j1 = j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])
                 largest[:] = -math.inf
                 if ball:
-                    _ball_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0 + radius, radius, largest)
+                    _ball_block(
+                        heights,
+                        i0,
+                        i1,
+                        j0,
+                        j1,
+                        ex0,
+                        ey0,
+                        frame[2],
+                        frame[3],
+                        dx,
+                        dy,
+                        dz,
+                        z0 + radius,
+                        radius,
+                        underside,
+                        largest,
+                    )
                 elif flat:
-                    _flat_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, radius, largest)
+                    _flat_block(
+                        heights,
+                        i0,
+                        i1,
+                        j0,
+                        j1,
+                        ex0,
+                        ey0,
+                        frame[2],
+                        frame[3],
+                        dx,
+                        dy,
+                        dz,
+                        z0,
+                        radius,
+                        underside,
+                        largest,
+                    )
                 else:
-                    _round_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, largest)
+                    _round_block(
+                        heights, i0, i1, j0, j1, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, underside, largest
+                    )
                 maxima[i, j] = largest.max()
 
 
@@ -330,6 +433,7 @@ def cut_arcs(
     heights: FloatArray,
     maxima: FloatArray,
     frame: FloatArray,
+    underside: float,
     tool: FloatArray,
     arcs: FloatArray,
     first_band: int,
@@ -356,7 +460,7 @@ def cut_arcs(
         for i in range(left, right + 1):
             for j in range(bottom, top + 1):
                 old = maxima[i, j]
-                if old <= z0:
+                if old <= underside or old <= z0:
                     continue
                 x, y = frame[0] + i * side_x + reach_x, frame[1] + j * side_y + reach_y
                 near = max(0.0, _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7]) - diagonal)
@@ -368,7 +472,7 @@ def cut_arcs(
                         x, y = frame[0] + a * frame[2], frame[1] + b * frame[3]
                         off = _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7])
                         if off <= radius:
-                            heights[a, b] = min(heights[a, b], z0 + _profile(tool, off))
+                            heights[a, b] = min(heights[a, b], max(underside, z0 + _profile(tool, off)))
                         largest = max(largest, heights[a, b])
                 maxima[i, j] = largest
 
@@ -416,24 +520,26 @@ def rest_heights(
     radius = tool[6]
     side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
     wide_x, wide_y = (BLOCK - 1) * frame[2], (BLOCK - 1) * frame[3]
+    # the dexel that held the tool at the last point most often nearly holds it at the next
+    last_a, last_b = 0, 0
     for k in range(first, last):
         px, py = points[k, 0], points[k, 1]
         best = -math.inf
-        home_x = min(max(int(math.floor((px - frame[0]) / side_x)), 0), maxima.shape[0] - 1)
-        home_y = min(max(int(math.floor((py - frame[1]) / side_y)), 0), maxima.shape[1] - 1)
+        away = (frame[0] + last_a * frame[2] - px) ** 2 + (frame[1] + last_b * frame[3] - py) ** 2
+        if away <= radius * radius:
+            best = heights[last_a, last_b] - _profile(tool, math.sqrt(away))
         left = max(0, int(math.floor((px - radius - frame[0]) / side_x)))
         right = min(maxima.shape[0] - 1, int(math.floor((px + radius - frame[0]) / side_x)))
         bottom = max(0, int(math.floor((py - radius - frame[1]) / side_y)))
         top = min(maxima.shape[1] - 1, int(math.floor((py + radius - frame[1]) / side_y)))
-        # the block below the tip first: it most often decides, and the others are left after one comparison
-        for at in range(-1, (right - left + 1) * (top - bottom + 1)):
-            i, j = home_x, home_y
-            if at >= 0:
-                i, j = left + at // (top - bottom + 1), bottom + at % (top - bottom + 1)
+        for at in range((right - left + 1) * (top - bottom + 1)):
+            i, j = left + at // (top - bottom + 1), bottom + at % (top - bottom + 1)
+            if maxima[i, j] <= best:
+                continue
             gap_x = max(0.0, frame[0] + i * side_x - px, px - frame[0] - i * side_x - wide_x)
             gap_y = max(0.0, frame[1] + j * side_y - py, py - frame[1] - j * side_y - wide_y)
             near = gap_x * gap_x + gap_y * gap_y
-            if near > radius * radius or maxima[i, j] <= best:
+            if near > radius * radius:
                 continue
             if maxima[i, j] - _profile(tool, math.sqrt(near)) <= best:
                 continue
@@ -443,7 +549,9 @@ def rest_heights(
                         continue
                     away = (frame[0] + a * frame[2] - px) ** 2 + (frame[1] + b * frame[3] - py) ** 2
                     if away <= radius * radius:
-                        best = max(best, heights[a, b] - _profile(tool, math.sqrt(away)))
+                        tip = heights[a, b] - _profile(tool, math.sqrt(away))
+                        if tip > best:
+                            best, last_a, last_b = tip, a, b
         out[k] = best
 
 

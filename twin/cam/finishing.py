@@ -20,9 +20,12 @@ from twin.cam.arc_fit import FitOptions, fit_path
 from twin.cam.dexel import Dexels
 from twin.cam.drop_cutter import DropCutter
 from twin.cam.linking import LinkOptions, Pass, link
+from twin.cam.machining_time import Dynamics
 from twin.cam.rest import spacing_for_cusp, stock_heights
 from twin.cam.roughing import StageFeeds, Workspace
+from twin.cam.steep import SteepMap, level_lines
 from twin.cam.toolpath import ToolPath
+from twin.cam.tour import LinkSpeeds, order_pieces
 
 #: Part of the chord tolerance that dividing rows may use; fitting has the rest.
 _SHARE = 0.3
@@ -139,20 +142,87 @@ def _gathered(across: FloatArray, rows: NDArray[np.int64], ats: FloatArray, zs: 
     ]
 
 
-def row_passes(rows: Sequence[Row], cutter: DropCutter, stock: Dexels, options: FinishingOptions) -> Iterator[Pass]:
-    """What of the rows cuts, every second row the other way."""
+def row_chains(
+    rows: Sequence[Row], cutter: DropCutter, stock: Dexels, options: FinishingOptions, chart: SteepMap | None = None
+) -> list[list[FloatArray]]:
+    """What of the rows cuts, to and fro: each chain holds runs of neighbouring rows that lie beside each other.
+
+    Args:
+        chart: steep places, where there are no rows.
+    """
     assert cutter.tool is not None
     u = 0 if options.direction == "x" else 1
-    for number, row in enumerate(rows):
+    chains: list[list[FloatArray]] = []
+    last: list[list[FloatArray]] = []
+    for row in rows:
         line = np.empty((len(row.z_mm), 3))
         line[:, u], line[:, 1 - u], line[:, 2] = row.along_mm, row.at_mm, row.z_mm
-        tips = stock_heights(stock, cutter.tool, np.ascontiguousarray(line[:, :2]))
-        bounds = np.empty((len(line), 2), dtype=np.int64)
-        count = kernels.runs(tips > row.z_mm + options.least_mm, np.diff(row.along_mm), options.bridge_mm, bounds)
-        found = [line[max(0, a - 1) : b + 2] for a, b in bounds[:count].tolist()]
-        if number % 2 == 1:
-            found = [run[::-1] for run in reversed(found)]
-        yield from (Pass(points_mm=run) for run in found if len(run) > 1)
+        plan = np.ascontiguousarray(line[:, :2])
+        wanted = stock_heights(stock, cutter.tool, plan) > row.z_mm + options.least_mm
+        if chart is not None:
+            wanted &= ~chart.at(chart.inner, plan)
+        here: list[list[FloatArray]] = []
+        for run in _runs(line, wanted, options.bridge_mm):
+            beside = [c for c in last if _overlap(c[-1][:, u], run[:, u])]
+            if len(beside) == 1 and all(beside[0] is not c for c in here):
+                chain = beside[0]
+                back = np.linalg.norm(run[-1] - chain[-1][-1]) < np.linalg.norm(run[0] - chain[-1][-1])
+                chain.append(run[::-1] if back else run)
+            else:
+                chain = [run]
+                chains.append(chain)
+            here.append(chain)
+        last = here
+    return chains
+
+
+def _overlap(a: FloatArray, b: FloatArray) -> bool:
+    """Whether two runs share more than half of the shorter one's range."""
+    shared = min(a.max(), b.max()) - max(a.min(), b.min())
+    return bool(shared > 0.5 * min(np.ptp(a), np.ptp(b)))
+
+
+def _runs(line: FloatArray, wanted: NDArray[np.bool_], bridge_mm: float) -> Iterator[FloatArray]:
+    """The parts of a line that are wanted, a point more at both ends."""
+    bounds = np.empty((len(line), 2), dtype=np.int64)
+    spacing = np.linalg.norm(np.diff(line[:, :2], axis=0), axis=1)
+    count = kernels.runs(np.ascontiguousarray(wanted), spacing, bridge_mm, bounds)
+    for a, b in bounds[:count].tolist():
+        run = line[max(0, a - 1) : b + 2]
+        if len(run) > 1:
+            yield run
+
+
+def steep_chains(
+    cutter: DropCutter, stock: Dexels, options: FinishingOptions, chart: SteepMap
+) -> list[list[FloatArray]]:
+    """What of the level lines cuts, a chain for each wall, from its top."""
+    assert cutter.tool is not None
+    chains: list[list[FloatArray]] = []
+    walls = list(level_lines(cutter, chart, options.stepover_mm, _SHARE * options.chord_mm))
+    for wall in walls:
+        chain: list[FloatArray] = []
+        for line in wall:
+            tips = stock_heights(stock, cutter.tool, np.ascontiguousarray(line[:, :2]))
+            chain += _runs(line, tips > line[:, 2] + options.least_mm, options.bridge_mm)
+        if chain:
+            chains.append(chain)
+    return chains
+
+
+def in_order(chains: Sequence[list[FloatArray]], space: Workspace, dynamics: Dynamics) -> Iterator[Pass]:
+    """The chains' runs as passes, chains in the order of a tour."""
+    if not chains:
+        return
+    ends = np.array([(chain[0][0, :2], chain[-1][-1, :2]) for chain in chains])
+    speeds = LinkSpeeds(
+        feed_mm_s=1e-6,  # chains are never joined on the surface
+        rapid_mm_s=dynamics.rapid_mm_min / 60.0,
+        rapid_mm_s2=dynamics.rapid_mm_s2,
+    )
+    tour = order_pieces(ends, space.low_mm[:2], speeds, two_way=False)
+    for number in tour.order.tolist():
+        yield from (Pass(points_mm=run) for run in chains[number])
 
 
 class RowWay:
@@ -193,7 +263,9 @@ class RowWay:
         return line
 
 
-def finishing(space: Workspace, cutter: DropCutter, options: FinishingOptions, stock: Dexels) -> ToolPath:
+def finishing(
+    space: Workspace, cutter: DropCutter, options: FinishingOptions, stock: Dexels, dynamics: Dynamics
+) -> ToolPath:
     """Rows over all of the part's plan where there is material above the surface.
 
     Args:
@@ -202,7 +274,14 @@ def finishing(space: Workspace, cutter: DropCutter, options: FinishingOptions, s
     """
     assert cutter.tool is not None
     low, high = space.part.vertices_mm.min(axis=0)[:2], space.part.vertices_mm.max(axis=0)[:2]
-    passes = list(row_passes(scan_rows(cutter, low, high, options), cutter, stock, options))
+    chart = None
+    if options.steep_deg is not None:
+        chart = SteepMap.of(cutter, low, high, options.pitch_mm, options.steep_deg)
+    passes = list(
+        in_order(row_chains(scan_rows(cutter, low, high, options), cutter, stock, options, chart), space, dynamics)
+    )
+    if chart is not None:
+        passes += in_order(steep_chains(cutter, stock, options, chart), space, dynamics)
     linking = LinkOptions(
         safe_z_mm=space.safe_z_mm,
         clearance_mm=space.clearance_mm,
@@ -214,6 +293,11 @@ def finishing(space: Workspace, cutter: DropCutter, options: FinishingOptions, s
         entry="plunge",
     )
     moves = link(passes, linking, RowWay(cutter, stock, 0.5 * options.stepover_mm)) if passes else ()
-    path = ToolPath(moves=moves, tool=cutter.tool, name=f"finishing, scanning along {options.direction}")
+    path = ToolPath(moves=moves, tool=cutter.tool, name=_name(options))
     share = (1.0 - _SHARE) * options.chord_mm
     return fit_path(path, FitOptions(tolerance_mm=share, gouge_mm=share, material="below"))
+
+
+def _name(options: FinishingOptions) -> str:
+    steep = f", level lines above {options.steep_deg:g} deg" if options.steep_deg is not None else ""
+    return f"finishing, scanning along {options.direction}{steep}"

@@ -102,7 +102,8 @@ def _runs(line: FloatArray, tips: FloatArray, z_mm: float, row: int, options: Cu
     if np.all(line[0] == line[-1]) and not marked.all():
         # a closed line begins where it does not cut
         k = int(np.flatnonzero(~marked)[0])
-        line, tips, marked = (np.concatenate((a[k:-1], a[: k + 1])) for a in (line, tips, marked))
+        turn = np.concatenate((np.arange(k, len(line) - 1), np.arange(k + 1)))
+        line, tips, marked = line[turn], tips[turn], marked[turn]
     bounds = np.empty((len(marked), 2), dtype=np.int64)
     spacing = np.linalg.norm(np.diff(line, axis=0), axis=1)
     count = kernels.runs(np.ascontiguousarray(marked), spacing, options.bridge_mm, bounds)

@@ -1,8 +1,8 @@
 """Where a tool's axis may be at each height, from slices of the part.
 
-The mold paper, section 2.1: the contours of a level are offset by tool radius and allowance, outlines of hollows (Cavity)
-inwards and outlines of what stands in them (Boss) outwards, each kind is united, and Boss is subtracted from Cavity.
-That is what growing the level's section does: its holes are the cavities, its outer rings the bosses.
+The mold paper, section 2.1: the contours of a level are offset by tool radius and allowance, outlines of hollows
+(Cavity) inwards and outlines of what stands in them (Boss) outwards, each kind is united, and Boss is subtracted from
+Cavity. That is what growing the level's section does: its holes are the cavities, its outer rings the bosses.
 
 A part is cut from above, so a level's section is united with those above it. A tool with a round corner touches at
 several heights: the section at each is grown by the tool's radius at the next one above, which errs away from the

@@ -135,7 +135,7 @@ def remaining_cuts(
 def ordered_passes(
     levels: Sequence[LevelCuts], space: Workspace, options: SemiOptions, dynamics: Dynamics
 ) -> Iterator[Pass]:
-    """Passes level by level, in each the order of a tour; those that the tool reaches without going up share a layer."""
+    """Passes level by level, in each the order of a tour; those reached without going up share a layer."""
     at = space.low_mm[:2]
     layer = 0
     for one in levels:

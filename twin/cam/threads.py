@@ -9,6 +9,8 @@ from itertools import pairwise
 
 #: Parts that work is cut into; the same for any number of threads, so that results are the same too.
 PARTS = 8
+#: Items that are not worth several threads.
+FEW = 4096
 
 
 def in_parts(work: Callable[[int, int], None], count: int, *, threads: int | None = None, parts: int = PARTS) -> None:
@@ -17,6 +19,7 @@ def in_parts(work: Callable[[int, int], None], count: int, *, threads: int | Non
     Args:
         threads: how many work, None for all cores.
     """
+    parts = parts if count > FEW else 1
     bounds = [count * k // parts for k in range(parts + 1)]
     run_all([_part(work, a, b) for a, b in pairwise(bounds) if b > a], threads)
 

@@ -25,8 +25,8 @@ def corner_speeds(
     """Largest speed between each two blocks, and at both ends of the chain, where it is 0.
 
     A corner is rounded by an arc that stands off it by the allowed deviation (junction deviation): with the angle t
-    between the blocks, v^2 = a d sin(t/2) / (1 - sin(t/2)). Short chords of a curve are taken as parts of the circle that
-    touches both: v^2 = a r with r = l / (2 tan(turn / 2)).
+    between the blocks, v^2 = a d sin(t/2) / (1 - sin(t/2)). Short chords of a curve are taken as parts of the circle
+    that touches both: v^2 = a r with r = l / (2 tan(turn / 2)).
 
     Args:
         length, radius, speed, acceleration: of each block, shape (n,); radius inf for a straight one; mm, mm/s, mm/s2.

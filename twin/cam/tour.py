@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,7 +55,8 @@ class ClearGrid:
     Attributes:
         low_mm: place of grid point (0, 0), shape (2,).
         pitch_mm: distance of the grid points.
-        distance_mm: at each grid point the distance to the nearest one where the tool must not be, shape (nx, ny); 0 there.
+        distance_mm: at each grid point the distance to the nearest one where the tool must not be, 0 there;
+            shape (nx, ny).
     """
 
     low_mm: FloatArray
@@ -176,18 +177,17 @@ def _search(
         tour, back = _opened(tour, back)
     total = kernels.tour_s(tour, back, ends, lift, speeds, *field)
     out, into = 2 * tour[:-1] + 1 - back[:-1], 2 * tour[1:] + back[1:]
-    down = [kernels.stays_down(e, f, ends, lift, speeds, *field) for e, f in zip(out, into, strict=True)]
-    return Tour(
-        order=tour[1:] - 1, backwards=back[1:] == 1, down=np.array(down, dtype=bool), link_s=total, first_s=first
-    )
+    down = np.empty(n - 1, dtype=np.bool_)
+    kernels.links_down(out, into, ends, lift, speeds, *field, down)
+    return Tour(order=tour[1:] - 1, backwards=back[1:] == 1, down=down, link_s=total, first_s=first)
 
 
-def _iterate(tour: NDArray[np.int64], back: NDArray[np.int8], rest: tuple, search: Search) -> None:  # type: ignore[type-arg]
+def _iterate(tour: NDArray[np.int64], back: NDArray[np.int8], rest: tuple[Any, ...], search: Search) -> None:
     left = search.iterations if search.iterations is not None else max(500, 5 * len(tour))
     random = 1 + search.seed % 2147483646
     end = None if search.budget_s is None else time.monotonic() + search.budget_s
     while left > 0 and (end is None or time.monotonic() < end):
-        _, random = kernels.iterate(tour, back, *rest, random, min(left, _CHUNK))
+        _, random = kernels.iterate(random, min(left, _CHUNK), tour, back, *rest)
         left -= _CHUNK
 
 

@@ -101,12 +101,22 @@ def link_s(
 
 
 @njit(cache=True, nogil=True)
-def stays_down(
-    e: int, f: int, ends: FloatArray, lift: FloatArray, speeds: FloatArray, clear: FloatArray, grid: FloatArray
-) -> bool:
-    """Whether the link from end e to end f is run at feed, without going up."""
-    length = math.hypot(ends[f, 0] - ends[e, 0], ends[f, 1] - ends[e, 1])
-    return link_s(e, f, ends, lift, speeds, clear, grid) < lift[e] + lift[f] + trapezoid_s(length, speeds[2], speeds[3])
+def links_down(
+    out: NDArray[np.int64],
+    into: NDArray[np.int64],
+    ends: FloatArray,
+    lift: FloatArray,
+    speeds: FloatArray,
+    clear: FloatArray,
+    grid: FloatArray,
+    down: NDArray[np.bool_],
+) -> None:
+    """Fill in which links, from the ends ``out`` to the ends ``into``, are run at feed without going up."""
+    for k in range(len(out)):
+        e, f = out[k], into[k]
+        length = math.hypot(ends[f, 0] - ends[e, 0], ends[f, 1] - ends[e, 1])
+        over = lift[e] + lift[f] + trapezoid_s(length, speeds[2], speeds[3])
+        down[k] = link_s(e, f, ends, lift, speeds, clear, grid) < over
 
 
 @njit(cache=True, nogil=True)
@@ -446,7 +456,8 @@ def local_search(
 ) -> float:
     """2-opt and Or-opt from a closed tour until nothing is gained, in place; returns the gain, s.
 
-    ``near`` has a row of pieces for each end, nearest first; ``soonest`` bounds the time to them from below. The dummy is piece ``len(tour) - 1``.
+    ``near`` has a row of pieces for each end, nearest first, ``soonest`` the least time of a link to them. The dummy is
+    piece ``len(tour) - 1``.
     """
     n = len(tour)
     place, queue, waits, log = _state(tour)
@@ -468,6 +479,8 @@ def _state(
 
 @njit(cache=True, nogil=True)
 def iterate(
+    random: int,
+    iterations: int,
     tour: NDArray[np.int64],
     back: NDArray[np.int8],
     near: NDArray[np.int64],
@@ -478,8 +491,6 @@ def iterate(
     clear: FloatArray,
     grid: FloatArray,
     two_way: bool,
-    random: int,
-    iterations: int,
 ) -> tuple[float, int]:
     """Iterated local search: double-bridges of neighbouring stretches, each kept if it ends shorter, else taken back.
 

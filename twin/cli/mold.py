@@ -124,7 +124,7 @@ def _recorded(chain: MoldChain, stages: tuple[Stage, ...], file: Path, *, force:
     from twin.sinks.rerun_paths import write_paths
 
     part = chain.part
-    paths = {s: lines_by_kind(chain.stage(s).path) for s in stages}
+    paths = {str(s): lines_by_kind(chain.stage(s).path) for s in stages}
     write_paths(file, part.vertices_mm, part.triangles, paths, force=force)
     return {"recording": file}
 

@@ -64,7 +64,7 @@ def paths(
     zigzag: Annotated[
         bool | None, _option("scan: rows to and fro, or all one way [zigzag].", "--zigzag/--one-way")
     ] = None,
-    climb: Annotated[bool | None, _option("Climb or conventional milling [climb].", "--climb/--conventional")] = None,
+    climb: Annotated[bool | None, _option("Climb or conventional [climb].", "--climb/--conventional")] = None,
     region: Annotated[
         tuple[float, float, float, float] | None,
         _option("Where the tip may be: X0 Y0 X1 Y1 [the box of part or stock]."),

@@ -111,7 +111,7 @@ class MoldChain:
     def _workspace(self) -> Workspace:
         box = self.job.stock.box_mm
         low: FloatArray = self.part.vertices_mm.min(axis=0)
-        high: FloatArray = self.part.vertices_mm.max(axis=0) + (0.0, 0.0, self.job.stock.top_mm)
+        high: FloatArray = self.part.vertices_mm.max(axis=0) + np.array([0.0, 0.0, self.job.stock.top_mm])
         if box is not None:
             low, high = np.array(box.min), np.array(box.max)
         checks.check_stock(self.part, low, high)
@@ -234,7 +234,7 @@ class MoldChain:
         self._say("finish", "finishing", 0.0)
         begin = time.perf_counter()
         cutter = self.cutter(self.job.finish)
-        path = finishing(self.space, cutter, self.finishing_options, before)
+        path = finishing(self.space, cutter, self.finishing_options, before, self.job.machine.dynamics)
         return self._result("finish", path, before.copy(), self.shape(self.job.finish), begin, {})
 
     @cached_property

@@ -80,7 +80,7 @@ class Rest:
 def rest_table(chain: MoldChain) -> dict[str, Rest]:
     """What each stage leaves."""
     surface = DropCutter(chain.surface, None)
-    results = {name: chain.stage(name) for name in ("rough", "semi", "finish")}  # type: ignore[arg-type]
+    results = {name: chain.stage(name) for name in ("rough", "semi", "finish")}
     first = results["rough"].stock
     part = surface.drop(first.points_mm).reshape(first.heights_mm.shape)
     table: dict[str, Rest] = {}

@@ -17,7 +17,12 @@ _ACROSS = 1.0 - 1e-9
 
 
 def pitch_bound_mm(settings: PathSettings, ground: Ground) -> float:
-    """See `sag_mm`, for the family of slices that a path is made from."""
+    """See `sag_mm`, for the family of slices that a path is made from.
+
+    A level of a flat tool needs nothing but the section at its own height, which is exact.
+    """
+    if settings.strategy == "contour" and ground.tool.corner_mm == 0.0:
+        return 0.0
     axis = ACROSS[settings.direction] if settings.strategy == "scan" else 2
     return sag_mm(ground.part.mesh, ground.tool, float(ground.part.slices.pitch_mm[axis]), axis)
 

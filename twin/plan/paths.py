@@ -7,7 +7,7 @@ path = plan(settings, part)
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -168,6 +168,8 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
         floor_mm=ground.floor_mm,
         top_mm=float(ground.stock_mm[1, 2]),
     )
+    if settings.remaining_mm is not None and settings.layers == 1:
+        passes = [replace(p, top_mm=way.clear_z_mm(p.points_mm[0], p.points_mm[0])) for p in passes]
     return tuple(passes), way
 
 

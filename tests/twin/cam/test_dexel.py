@@ -111,7 +111,9 @@ def test_removed_volumes_of_a_flat_tool_are_within_the_borders_dexels() -> None:
 @pytest.mark.parametrize("text", TOOLS)
 def test_order_and_threads_do_not_change_a_bit(text: str) -> None:
     tool = parse_tool(text)
-    starts, ends = PATH[:-1], PATH[1:]
+    parts = np.linspace(0.0, 1.0, 21)
+    dense = np.concatenate([a + parts[:-1, None] * (b - a) for a, b in pairwise(PATH)] + [PATH[-1:]])
+    starts, ends = dense[:-1], dense[1:]
     found = []
     for order, threads in ((slice(None), 1), (slice(None, None, -1), 1), (slice(None), 2)):
         dexels = stock(0.13)

@@ -198,6 +198,6 @@ def test_files_that_cannot_be_read(tmp_path: Path, content: bytes | None, messag
     path = tmp_path / "cuts.toml"
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(CutsError, match="cuts.toml") as caught:
+    with pytest.raises(CutsError, match=r"cuts\.toml") as caught:
         load_cuts(path)
     assert message in str(caught.value)

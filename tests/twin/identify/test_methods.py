@@ -197,6 +197,16 @@ def test_wrong_signs_and_units_are_seen(changed: dict[str, str], warning: str) -
     assert any(warning in w for w in found.warnings), found.warnings
 
 
+@pytest.mark.parametrize(
+    ("given", "hint"),
+    [("x=Fy,y=Fx,z=Fz", "x = y, y = x, z = z"), ("x=-Fx,y=-Fy,z=-Fz", "x = -x, y = -y, z = -z")],
+)
+def test_axes_under_which_the_forces_would_fit_are_named(given: str, hint: str) -> None:
+    data = mean_tables(BULL_CUTS, SOME)
+    found = identify(cuts_from_dict(data | {"defaults": {"map": given}}, "c.toml"))
+    assert found.warnings[-1] == f"mean forces would follow the model with {hint} of what the map gives"
+
+
 def test_an_axis_that_was_not_measured_is_left_out() -> None:
     data = mean_tables(BULL_CUTS, SOME)
     found = identify(cuts_from_dict(data | {"defaults": {"map": "x=Fx,y=Fy"}}, "c.toml"))

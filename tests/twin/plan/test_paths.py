@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from support.small_parts import box, prism, small_torus
+from support.small_parts import box, pocket, prism, small_torus
 
 from twin.cam.drop_cutter import DropCutter
 from twin.cam.sections import slice_part
@@ -19,7 +20,7 @@ from twin.job import load_job
 from twin.plan.accuracy import sag_mm
 from twin.plan.paths import Ground, plan, prepare
 from twin.plan.replay_job import replay_tables, write_replay_job
-from twin.plan.settings import read_settings, settings_of
+from twin.plan.settings import PathSettings, read_settings, settings_of
 from twin.tools.text import parse_tool
 from twin.verify.deviation import Deviation, Limits, deviation
 from twin.verify.machining import machined
@@ -145,6 +146,35 @@ def test_contours_are_the_outlines_at_the_radius() -> None:
         assert np.hypot(*gap.T) == pytest.approx(2.0, abs=0.002)
 
 
+@pytest.mark.parametrize(("tool", "entry", "climb"), [("flat 4", "helix", True), ("ball 4", "ramp", False)])
+def test_a_pocket_is_cleared_without_a_gouge(tmp_path: Path, tool: str, entry: str, climb: bool) -> None:
+    part = pocket(9.0, 6.0, -2.0, -4.0)
+    path, ground = made(
+        part,
+        strategy="contour",
+        tool=tool,
+        axial_depth_mm=1.0,
+        layers=0,
+        floor_z_mm=-2.0,
+        overhang_mm=0.0,
+        entry=entry,
+        helix_mm=1.0,
+        ramp_deg=10.0,
+        climb=climb,
+        arcs_mm=0.002,
+        radial_depth_mm=1.5,
+    )
+    assert any(True for _ in path.of_kind(MoveKind(entry)))
+    found = replayed(path, ground, part, tmp_path, 0.2, excess_mm=1.0)
+    assert found.worst_gouge_mm < 0.003
+    # a flat tool leaves its radius's share in the four upright corners, a ball in those and along the floor
+    corner = 2.0 * (math.sqrt(2.0) - 1.0)
+    assert 0.5 * corner < found.worst_excess_mm < (corner if tool == "flat 4" else 2.0 * (math.sqrt(3.0) - 1.0)) + 0.05
+    walls = [m.points_mm for m in path.of_kind(MoveKind.CUT) if m.points_mm[0, 2] == -2.0]
+    reach = max(float(np.abs(w[:, :2]).max()) for w in walls)
+    assert reach == pytest.approx(4.0, abs=0.003)
+
+
 def test_a_tool_larger_than_any_pocket_cuts_nothing() -> None:
     pocket = prism([(0, -3), (10, -3), (10, 0), (6.5, 0), (6.5, -2), (3.5, -2), (3.5, 0), (0, 0)], 0.0, 6.0)
     path, _ = made(pocket, strategy="contour", tool="flat 4", overhang_mm=0.0, floor_z_mm=-2.0)
@@ -198,6 +228,32 @@ def test_settings_come_from_a_file(tmp_path: Path) -> None:
         read_settings(file)
     with pytest.raises(ToolPathError, match="cannot be read"):
         read_settings(tmp_path / "none.toml")
+
+
+def test_what_is_left_tells_where_rapids_end() -> None:
+    values = {"strategy": "scan", "stepover_mm": 2.0, "zigzag": False, "climb": False, "region_mm": (4, 1, 12, 5)}
+    whole, ground = made(prism(SLOPE, 0.0, 6.0), **values)
+    known, _ = made(prism(SLOPE, 0.0, 6.0), **values, remaining_mm=0.3)
+    downs = [[m.end_mm[2] for m in p.of_kind(MoveKind.RAPID) if m.end_mm[2] < m.start_mm[2]] for p in (whole, known)]
+    assert min(downs[0]) >= float(ground.stock_mm[1, 2])
+    # one row begins over the floor and has 0.3 mm over it, and the clearance of 1 mm over that
+    assert min(downs[1]) == pytest.approx(1.3, abs=0.1)
+
+
+def test_the_page_has_every_setting() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "paths.md").read_text()
+    rows = re.findall(r"^\| `(\w+)` \| ?(?:`([^`]*)`)? ?\| (.*) \|$", page, flags=re.M)
+    wanted = [
+        (
+            key,
+            ""
+            if field.is_required() or field.default is None
+            else str(field.default).replace("True", "true").replace("False", "false"),
+            field.description,
+        )
+        for key, field in PathSettings.model_fields.items()
+    ]
+    assert rows == wanted
 
 
 def test_the_bound_of_a_pitch_is_that_of_the_slope() -> None:

@@ -16,9 +16,8 @@ BOX = {"min": [0, 0, -4], "max": [20, 16, 0]}
 
 def test_removal_alone_leaves_what_a_replay_leaves(tmp_path: Path) -> None:
     job = load_job(job_folder(tmp_path, stock__box_mm=BOX, tools__0__teeth=2))
-    (tmp_path / "slot.nc").write_text(
-        "T1 M6\nS3600 M3\nG0 X-6 Y8 Z-2\nG1 X10 F600\nG2 X14 Y4 I0 J-4 F400\nG1 Z1\nM30\n"
-    )
+    motions = "G0 X-6 Y8 Z-2\nG1 X10 F600\nG2 X14 Y4 I0 J-4 F400\nG1 Z1\n"
+    (tmp_path / "slot.nc").write_text(f"T1 M6\nS3600 M3\n{motions}M30\n")
     store, collisions = machined(job)
     with Replay(job.without_forces(), preview=False) as run:
         for _ in run:
