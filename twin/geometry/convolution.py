@@ -6,6 +6,7 @@ import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -54,6 +55,7 @@ def convolved(
     """
     count = threads or os.cpu_count() or 1
     empty = shapely.is_empty(shapes)
+    shapely.bounds(shapes)  # boxes are kept when first asked for, which threads must not do side by side
     with ThreadPoolExecutor(max_workers=count) as pool:
         up, down = margins(shapes, shapely.boundary(shapes) if edges is None else edges, pool)
 
@@ -79,19 +81,24 @@ def margins(shapes: Shapes, edges: Shapes, pool: ThreadPoolExecutor) -> tuple[Fl
         margins of each section in the next, and of each in the last one before it; -inf where there is none.
     """
     up, down = np.full(len(shapes), -np.inf), np.full(len(shapes), -np.inf)
-    shapely.prepare(shapes)
 
     def some(first: int) -> None:
-        pairs = slice(first, min(first + _PAIRS, len(shapes) - 1))
-        after = slice(pairs.start + 1, pairs.stop + 1)
-        same = np.array([a is b for a, b in zip(shapes[pairs], shapes[after], strict=True)], dtype=bool)
-        apart = shapely.distance(edges[pairs], edges[after])
-        apart = np.where(same, 0.0, np.nan_to_num(apart, nan=0.0))
-        up[pairs] = _margins_one_way(shapes[pairs], shapes[after], same, apart)
-        down[after] = _margins_one_way(shapes[after], shapes[pairs], same, apart)
+        last = min(first + _PAIRS, len(shapes) - 1)
+        same = np.array([a is b for a, b in pairwise(shapes[first : last + 1])], dtype=bool)
+        # GEOS builds indexes in prepared polygons when it first needs them: threads must not share these
+        own, lines = _copies(shapes[first : last + 1]), _copies(edges[first : last + 1])
+        shapely.prepare(own)
+        apart = np.where(same, 0.0, np.nan_to_num(shapely.distance(lines[:-1], lines[1:]), nan=0.0))
+        up[first:last] = _margins_one_way(own[:-1], own[1:], same, apart)
+        down[first + 1 : last + 1] = _margins_one_way(own[1:], own[:-1], same, apart)
 
     list(pool.map(some, range(0, len(shapes) - 1, _PAIRS)))
     return up, down
+
+
+def _copies(shapes: Shapes) -> Shapes:
+    """Polygons or lines that share nothing with the given ones."""
+    return np.asarray(shapely.from_wkb(shapely.to_wkb(shapes)), dtype=object)
 
 
 def _margins_one_way(shapes: Shapes, others: Shapes, same: NDArray[np.bool_], apart: FloatArray) -> FloatArray:
