@@ -37,6 +37,7 @@ from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
 TOOL = "ball 8"
 RADIUS_MM = 4.0
 HALF_MM = 30.0
+#: Distance of the places along a row, before it is made finer.
 PLACES_MM = 0.05
 FLOOR_MM = -10.0
 ROWS_MM = np.linspace(-HALF_MM, HALF_MM, 241)
@@ -157,9 +158,9 @@ def opencamlib_ms(mesh: Solid) -> float | None:
     surface = ocl.STLSurf()
     for a, b, c in mesh.vertices_mm[mesh.triangles].tolist():
         surface.addTriangle(ocl.Triangle(ocl.Point(*a), ocl.Point(*b), ocl.Point(*c)))
-    cutter = ocl.BatchDropCutter()
+    ball, cutter = ocl.BallCutter(2.0 * RADIUS_MM, 50.0), ocl.BatchDropCutter()  # it does not keep what it is given
     cutter.setSTL(surface)
-    cutter.setCutter(ocl.BallCutter(2.0 * RADIUS_MM, 50.0))
+    cutter.setCutter(ball)
     cutter.setThreads(1)
     cutter.setBucketSize(10)
     for x, y in np.random.default_rng(1).uniform(-HALF_MM, HALF_MM, (ASKED, 2)).tolist():

@@ -22,6 +22,8 @@ _WIDTH_PITCHES = 0.01
 _WIDE = 0.005
 #: Pieces on neighbouring planes that are this many pitches apart belong together: thin regions may lie aslant.
 _NEAR_PITCHES = 3.0
+#: Pieces that are nowhere thicker than this part of what counts are left out.
+_TIES = 0.125
 #: Places on the outline of a piece where its thickness is measured, at most.
 _MEASURED = 128
 
@@ -69,18 +71,23 @@ def leftovers(
     if len(pieces.shapes) == 0:
         return ()
     points, of = _measured(pieces)
-    planes = planes_mm[pieces.planes]
-    distance = _distances(points, planes[of], sections)
-    labels = _connected(pieces, pitch_mm)
+    distance = _distances(points, planes_mm[pieces.planes[of]], sections)
+    thick = np.zeros(len(pieces.shapes))
+    np.maximum.at(thick, of, distance)
+    # what is thinner everywhere would only tie regions together
+    kept = np.flatnonzero(thick > _TIES * thin_mm)
+    if len(kept) == 0:
+        return ()
+    labels = np.full(len(pieces.shapes), -1, dtype=np.int64)
+    labels[kept] = _connected(pieces.some(kept), pitch_mm)
     found = []
     for label in range(labels.max() + 1):
-        mine = np.flatnonzero(labels == label)
         places = np.flatnonzero(labels[of] == label)
         deepest = places[np.argmax(distance[places])]
         if distance[deepest] > thin_mm:
-            at = _in_space(points[deepest], planes[of[deepest]], sections.axis)
-            part = pieces.some(mine)
-            found.append(_leftover(part, planes[mine], pitch_mm, sections.axis, float(distance[deepest]), at))
+            at = _in_space(points[deepest], planes_mm[pieces.planes[of[deepest]]], sections.axis)
+            part = pieces.some(np.flatnonzero(labels == label))
+            found.append(_leftover(part, planes_mm[part.planes], pitch_mm, sections.axis, float(distance[deepest]), at))
     return tuple(sorted(found, key=lambda r: -r.volume_mm3))
 
 

@@ -18,7 +18,7 @@ from twin.cam.leftover import Leftover, leftovers
 from twin.cam.offset import CHORD_PITCHES, away, frame_boxes, towards
 from twin.cam.sections import Sections, SlicedPart, face_levels
 from twin.geometry.convolution import arc_segments, convolved
-from twin.geometry.shapes import Shapes, minus, to_shapes
+from twin.geometry.shapes import Shapes, boundaries, minus, to_shapes
 
 #: How far above a face a tool that stands on it is taken to be, mm: far above rounding, far below any tolerance.
 _ON_MM = 1e-5
@@ -107,7 +107,8 @@ def _closed(
         to_shapes(sections.regions), sections.positions_mm, places, towards(element, sections.axis), segments, threads
     )
     free = minus(outer, inflated)
-    swept = convolved(free, places, planes, away(element, sections.axis), segments, threads)
+    walls = boundaries(inflated)
+    swept = convolved(free, places, planes, away(element, sections.axis), segments, threads, edges=walls)
     return minus(box, swept)
 
 

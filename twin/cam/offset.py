@@ -23,7 +23,7 @@ from twin.cam.sections import Sections, SlicedPart, outside_sections
 from twin.cam.tip_lines import tip_regions
 from twin.geometry.convolution import Radii, arc_segments, convolved
 from twin.geometry.region import Region
-from twin.geometry.shapes import Shape, box_shape, grown_each, minus, to_region, to_shapes
+from twin.geometry.shapes import Shape, boundaries, box_shape, grown_each, minus, to_region, to_shapes
 from twin.workpiece.stock import SliceSet
 from twin.workpiece.store import PLANE_AXES
 
@@ -137,8 +137,16 @@ def shrink(
             own if sections is None else own.joined(sections), element, float(slices.pitch_mm[axis])
         )
         outer, box = frame_boxes(slices, axis, element)
-        free = minus(outer, to_shapes(wide.regions))
-        swept = convolved(free, wide.positions_mm, own.positions_mm, away(element, axis), segments, threads)
+        inside = to_shapes(wide.regions)
+        swept = convolved(
+            minus(outer, inside),
+            wide.positions_mm,
+            own.positions_mm,
+            away(element, axis),
+            segments,
+            threads,
+            edges=boundaries(inside),
+        )
         families[axis] = tuple(to_region(s) for s in minus(box, swept))
     return SliceSet(low_mm=slices.low_mm, high_mm=slices.high_mm, pitch_mm=slices.pitch_mm, regions=tuple(families))
 

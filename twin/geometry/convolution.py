@@ -16,6 +16,11 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.shapes import Shape, Shapes
 
+#: Neighbours compared at a time.
+_PAIRS = 16
+#: Least radius that a section is inflated by to hold its neighbour, mm; how often it is doubled, and then halved.
+_LEAST_MM = 1e-4
+_DOUBLINGS, _HALVINGS = 9, 3
 #: From heights above a plane to radii, NaN out of reach.
 Radii: TypeAlias = Callable[[FloatArray], FloatArray]
 
@@ -27,50 +32,112 @@ def arc_segments(radius_mm: float, chord_mm: float) -> int:
 
 
 def convolved(
-    shapes: Shapes, positions_mm: FloatArray, planes_mm: FloatArray, radii: Radii, segments: int, threads: int | None
+    shapes: Shapes,
+    positions_mm: FloatArray,
+    planes_mm: FloatArray,
+    radii: Radii,
+    segments: int,
+    threads: int | None,
+    *,
+    edges: Shapes | None = None,
 ) -> Shapes:
     """Union, on every plane, of all sections inflated by the radius that belongs to their distance (eq. 1).
 
-    A section that lies inside of the next one, which is inflated by as much or more, is left out: that changes nothing.
+    Sections that a neighbour makes needless are left out, see `margins`: that changes nothing but the places of chords.
 
     Args:
         shapes: sections at ``positions_mm``, which increase.
         radii: from heights above a plane to radii, NaN out of reach.
         segments: segments a quarter circle.
+        threads: threads to work with, all cores if None.
+        edges: the sections' boundaries, where these are less than the polygons': without a frame that stands for
+            everything around.
     """
-    inside_next, inside_last = _nested(shapes)
-
-    def plane(at_mm: float) -> Shape:
-        radius = radii(positions_mm - at_mm)
-        wanted = _undominated(radius, inside_next, inside_last) & ~shapely.is_empty(shapes)
-        grown = shapely.buffer(shapes[wanted], radius[wanted], quad_segs=segments)
-        return shapely.union_all(grown)
-
-    made = np.empty(len(planes_mm), dtype=object)
     count = threads or os.cpu_count() or 1
-    if count == 1:
-        made[:] = [plane(float(p)) for p in planes_mm]
-    else:
-        with ThreadPoolExecutor(max_workers=count) as pool:
-            made[:] = list(pool.map(plane, planes_mm.tolist()))
+    empty = shapely.is_empty(shapes)
+    shapely.bounds(shapes)  # boxes are kept when first asked for, which threads must not do side by side
+    with ThreadPoolExecutor(max_workers=count) as pool:
+        up, down = margins(shapes, shapely.boundary(shapes) if edges is None else edges, pool)
+
+        def plane(at_mm: float) -> Shape:
+            radius = radii(positions_mm - at_mm)
+            wanted = needed(radius, up, down) & ~empty
+            return shapely.union_all(shapely.buffer(shapes[wanted], radius[wanted], quad_segs=segments))
+
+        made = np.empty(len(planes_mm), dtype=object)
+        made[:] = list(pool.map(plane, planes_mm.tolist()))
     return made
 
 
-def _nested(shapes: Shapes) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Whether each section lies inside of the next, and inside of the last one before it."""
-    shapely.prepare(shapes)
-    inside_next, inside_last = np.zeros(len(shapes), dtype=bool), np.zeros(len(shapes), dtype=bool)
-    same = np.array([a is b for a, b in pairwise(shapes)], dtype=bool)
-    inside_next[:-1] = same | shapely.covers(shapes[1:], shapes[:-1])
-    inside_last[1:] = same | shapely.covers(shapes[:-1], shapes[1:])
-    return inside_next, inside_last
+def margins(shapes: Shapes, edges: Shapes, pool: ThreadPoolExecutor) -> tuple[FloatArray, FloatArray]:
+    """By how much sections lie inside of their neighbours, or stand out of them.
+
+    A section inflated by r lies inside of its neighbour inflated by q as soon as r - q is not above the margin: where
+    the section is inside, the margin is its distance from the neighbour's boundary; where it stands out, minus the
+    radius that the neighbour must be inflated by to hold it, found by trying, up to a tenth too large. Sections at
+    jumps are not left out: there is no such radius, or a large one.
+
+    Returns:
+        margins of each section in the next, and of each in the last one before it; -inf where there is none.
+    """
+    up, down = np.full(len(shapes), -np.inf), np.full(len(shapes), -np.inf)
+
+    def some(first: int) -> None:
+        last = min(first + _PAIRS, len(shapes) - 1)
+        same = np.array([a is b for a, b in pairwise(shapes[first : last + 1])], dtype=bool)
+        # GEOS builds indexes in prepared polygons when it first needs them: threads must not share these
+        own, lines = _copies(shapes[first : last + 1]), _copies(edges[first : last + 1])
+        shapely.prepare(own)
+        apart = np.where(same, 0.0, np.nan_to_num(shapely.distance(lines[:-1], lines[1:]), nan=0.0))
+        up[first:last] = _margins_one_way(own[:-1], own[1:], same, apart)
+        down[first + 1 : last + 1] = _margins_one_way(own[1:], own[:-1], same, apart)
+
+    list(pool.map(some, range(0, len(shapes) - 1, _PAIRS)))
+    return up, down
 
 
-def _undominated(
-    radius: FloatArray, inside_next: NDArray[np.bool_], inside_last: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
-    """Sections within reach that no neighbour makes needless."""
-    keep = ~np.isnan(radius)
-    keep[:-1] &= ~(inside_next[:-1] & (radius[1:] > radius[:-1]))
-    keep[1:] &= ~(inside_last[1:] & (radius[:-1] >= radius[1:]))
+def _copies(shapes: Shapes) -> Shapes:
+    """Polygons or lines that share nothing with the given ones."""
+    return np.asarray(shapely.from_wkb(shapely.to_wkb(shapes)), dtype=object)
+
+
+def _margins_one_way(shapes: Shapes, others: Shapes, same: NDArray[np.bool_], apart: FloatArray) -> FloatArray:
+    found = np.full(len(shapes), -np.inf)
+    inside = same | shapely.covers(others, shapes)
+    found[inside] = apart[inside]
+    out = np.flatnonzero(~inside & ~shapely.is_empty(others))
+    found[out] = -_holding(shapes[out], others[out], apart[out])
+    return found
+
+
+def _holding(shapes: Shapes, others: Shapes, apart: FloatArray) -> FloatArray:
+    """Radius by which each of the others must be inflated to hold a shape, up to a tenth more; inf where it is large.
+
+    Doubled from a little above the distance of the boundaries until it does, then halved.
+    """
+    fails, holds = np.zeros(len(shapes)), np.full(len(shapes), np.inf)
+    radius = 1.05 * apart + _LEAST_MM
+    for step in range(_DOUBLINGS + _HALVINGS):
+        todo = np.flatnonzero(~np.isfinite(holds) if step < _DOUBLINGS else (fails > 0.0) & np.isfinite(holds))
+        held = np.zeros(len(shapes), dtype=bool)
+        held[todo] = shapely.covers(shapely.buffer(others[todo], radius[todo]), shapes[todo])
+        holds[held] = radius[held]
+        missed = np.setdiff1d(todo, np.flatnonzero(held))
+        fails[missed] = radius[missed]
+        radius = np.where(np.isfinite(holds), np.sqrt(fails * np.where(np.isfinite(holds), holds, 0.0)), 2.0 * radius)
+    return holds
+
+
+def needed(radius_mm: FloatArray, up: FloatArray, down: FloatArray) -> NDArray[np.bool_]:
+    """Sections within reach that no neighbour makes needless; of two that are alike the first is kept.
+
+    Args:
+        radius_mm: radius of each section, NaN out of reach.
+        up, down: see `margins`.
+    """
+    keep = ~np.isnan(radius_mm)
+    more = radius_mm[:-1] - radius_mm[1:]
+    by_next, by_last = more <= up[:-1], -more <= down[1:]
+    keep[:-1] &= ~(by_next & ~by_last)
+    keep[1:] &= ~by_last
     return keep

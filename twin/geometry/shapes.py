@@ -64,6 +64,11 @@ def minus(one: Shape | Shapes, other: Shape | Shapes) -> Shapes:
     return np.asarray(shapely.difference(one, other), dtype=object)
 
 
+def boundaries(shapes: Shapes) -> Shapes:
+    """Boundary lines of polygons."""
+    return np.asarray(shapely.boundary(shapes), dtype=object)
+
+
 def grown_each(shapes: Shapes, radius_mm: float, segments: int) -> Shapes:
     """Every polygon inflated alone.
 

@@ -21,7 +21,7 @@ from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import solid
 
 #: Segments about the axis: a polygon's area is less than its circle's by this factor.
-AROUND = 64
+AROUND = 112
 ROUND = math.sin(2.0 * math.pi / AROUND) / (2.0 * math.pi / AROUND)
 
 
@@ -69,8 +69,8 @@ def test_a_ball_of_4_mm_leaves_the_closed_forms_ring_in_the_inner_fillet_and_not
     assert ring.volume_mm3 == pytest.approx(exact, rel=0.01)
     p = profile()
     foot, own = (p.fillet(r, -1)[0] for r in (4.0, 3.0))
-    # thickest on the line through both balls' centres; corners of the polygon about the axis lie 8 um deeper
-    assert ring.thickness_mm == pytest.approx(math.hypot(own - foot, 1.0) - 1.0, abs=0.008)
+    # thickest on the line through both balls' centres; corners of the polygon about the axis lie a little deeper
+    assert ring.thickness_mm == pytest.approx(math.hypot(own - foot, 1.0) - 1.0, abs=0.006)
     # up to where the larger ball touches the tube; its thin ends fade below what slices can tell
     touch = p.ring_mm - (p.ring_mm - foot) * p.tube_mm / (p.tube_mm + 4.0)
     assert ring.high_mm[0] == pytest.approx(touch, abs=0.06)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -110,21 +111,39 @@ def test_the_result_does_not_depend_on_the_direction_of_slices(degrees: float) -
     assert all(a < v for a, v in zip(alone, found, strict=True))
 
 
-def test_sections_left_out_change_nothing() -> None:
-    rng = np.random.default_rng(4)
-    regions = []
-    for _ in range(12):
-        u, v = rng.uniform(0.0, 2.0, 2)
-        size = rng.uniform(1.0, 6.0)
-        regions.append(Region.of([(u, v), (u + size, v), (u + size, v + size), (u, v + size)]))
-    regions[3] = regions[4] = regions[5]
-    at = np.sort(rng.uniform(0.0, 6.0, 12))
-    shapes = to_shapes(regions)
-    for plane in (-1.0, 2.2, 4.0):
-        got = convolution.convolved(shapes, at, np.array([plane]), BALL.ball_radii_mm, 64, 1)[0]
+@pytest.mark.parametrize("seed", range(8))
+def test_sections_left_out_change_nothing(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    # rings that shrink, grow, shift and jump from section to section, some of them twice
+    middle, outer, inner = np.zeros(2), 6.0, 3.0
+    regions: list[Region] = []
+    angle = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
+    circle = np.column_stack((np.cos(angle), np.sin(angle)))
+    for k in range(40):
+        middle = middle + rng.normal(0.0, 0.02 if seed % 2 else 0.0, 2)
+        outer += rng.choice([-0.3, -0.05, 0.0, 0.05, 0.2])
+        inner = min(max(0.3, inner + rng.normal(0.0, 0.1)), 0.9 * outer)
+        if k == 20:
+            outer = 0.5 * outer + 2.0
+        regions.append(Region.of(middle + outer * circle, (middle + min(inner, 0.8 * outer) * circle)[::-1]))
+    regions[30] = regions[31]
+    at = 0.1 * np.arange(40)
+    shapes, segments = to_shapes(regions), 32
+    chord = RADIUS * (1.0 - math.cos(0.25 * math.pi / segments))
+    planes = np.array([-1.0, 1.02, 2.0, 4.5])
+    left_out = 0
+    with ThreadPoolExecutor(2) as pool:
+        up, down = convolution.margins(shapes, shapely.boundary(shapes), pool)
+    for plane, got in zip(
+        planes, convolution.convolved(shapes, at, planes, BALL.ball_radii_mm, segments, 2), strict=True
+    ):
         radii = BALL.ball_radii_mm(at - plane)
-        wanted = shapely.union_all([s.buffer(r, quad_segs=64) for s, r in zip(shapes, radii, strict=True) if r >= 0.0])
-        assert shapely.symmetric_difference(got, wanted).area < 1e-9 * wanted.area
+        grown = [s.buffer(r, quad_segs=segments) for s, r in zip(shapes, radii, strict=True) if r >= 0.0]
+        wanted = shapely.union_all(grown)
+        assert shapely.difference(wanted, got.buffer(1.01 * chord)).area == 0.0
+        assert shapely.difference(got, wanted.buffer(1e-9)).area == 0.0
+        left_out += len(grown) - int(convolution.needed(radii, up, down).sum())
+    assert left_out > 20
 
 
 @pytest.mark.parametrize("text", ["ball 4", "flat 4", "bull 4 r0.5"])
