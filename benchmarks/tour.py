@@ -38,7 +38,7 @@ def ours(points: FloatArray, seconds: float) -> tuple[float, float]:
 
 
 def theirs(points: FloatArray, seconds: float) -> tuple[float | None, float]:
-    """OR-tools: cheapest arc first, then guided local search; None where it finds nothing in that time, or is not installed."""
+    """OR-tools: cheapest arc first, then guided local search; None where it finds nothing, or is not installed."""
     begin = time.perf_counter()
     try:
         from ortools.constraint_solver import pywrapcp, routing_enums_pb2
