@@ -3,7 +3,8 @@
     python -m benchmarks.dexel [--passes 60] [--step 0.3]
 
 The z-map is the usual one: the tool stands at each point in turn, every dexel below it is compared; what lies between
-two points is not cut. Both run on one thread over the same path; then ours on all cores, and other tools.
+two points is not cut. Both run on one thread over the same path, in CPU time, best of three; then ours on all cores in
+wall time, and other tools.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from twin.tools.text import parse_tool
 
 PITCH_MM = 0.1
 ALLOWANCE_MM = 0.3
+REPEATS = 3
 
 
 @njit(cache=True)
@@ -65,11 +67,29 @@ def stock() -> Dexels:
 
 def moves_a_second(text: str, points: FloatArray, threads: int | None) -> tuple[float, Dexels]:
     """Speed of the exact model, and what it leaves."""
-    tool, dexels = parse_tool(text), stock()
-    dexels.copy().cut(tool, Strokes.through(points[:9]), threads)
-    begin = time.perf_counter()
-    dexels.cut(tool, Strokes.through(points), threads)
-    return (len(points) - 1) / (time.perf_counter() - begin), dexels
+    tool, strokes = parse_tool(text), Strokes.through(points)
+    clock = time.process_time if threads == 1 else time.perf_counter
+    stock().cut(tool, Strokes.through(points[:9]), threads)
+    best = math.inf
+    for _ in range(REPEATS):
+        dexels = stock()
+        begin = clock()
+        dexels.cut(tool, strokes, threads)
+        best = min(best, clock() - begin)
+    return (len(points) - 1) / best, dexels
+
+
+def zmap_points_a_second(points: FloatArray) -> tuple[float, FloatArray]:
+    """Speed of the plain z-map, and its heights."""
+    best = math.inf
+    for _ in range(REPEATS):
+        plain = stock()
+        low = float(plain.x_mm[0])
+        plain_zmap(plain.heights_mm.copy(), low, PITCH_MM, points[:2], 4.0)
+        begin = time.process_time()
+        plain_zmap(plain.heights_mm, low, PITCH_MM, points, 4.0)
+        best = min(best, time.process_time() - begin)
+    return len(points) / best, plain.heights_mm
 
 
 def main() -> None:
@@ -78,11 +98,7 @@ def main() -> None:
     parser.add_argument("--step", type=float, default=0.3)
     options = parser.parse_args()
     points = finishing(options.passes, options.step)
-    plain = stock()
-    plain_zmap(plain.heights_mm.copy(), float(plain.x_mm[0]), PITCH_MM, points[:2], 4.0)
-    begin = time.perf_counter()
-    plain_zmap(plain.heights_mm, float(plain.x_mm[0]), PITCH_MM, points, 4.0)
-    zmap = len(points) / (time.perf_counter() - begin)
+    zmap, left = zmap_points_a_second(points)
     ball, exact = moves_a_second("ball 8", points, 1)
     report(
         "dexel",
@@ -92,7 +108,7 @@ def main() -> None:
         ball_moves_a_second_all_cores=round(moves_a_second("ball 8", points, None)[0]),
         plain_zmap_points_a_second=round(zmap),
         times_plain_zmap=round(ball / zmap, 2),
-        most_left_by_zmap_um=round(1000.0 * float((plain.heights_mm - exact.heights_mm).max()), 1),
+        most_left_by_zmap_um=round(1000.0 * float((left - exact.heights_mm).max()), 1),
         flat_moves_a_second=round(moves_a_second("flat 8", points, 1)[0]),
         bull_moves_a_second=round(moves_a_second("bull 8 r1", points, 1)[0]),
     )

@@ -109,6 +109,10 @@ def block_maxima(heights: FloatArray, maxima: FloatArray) -> None:
 @njit(cache=True, nogil=True)
 def _ball_block(
     heights: FloatArray,
+    i0: int,
+    i1: int,
+    j0: int,
+    j1: int,
     ex0: float,
     ey0: float,
     pitch_x: float,
@@ -134,9 +138,10 @@ def _ball_block(
         centre = centre + min(0.0, dz)
         dz = 0.0
     r2 = radius * radius
-    for i in range(heights.shape[0]):
+    for i in range(i1 - i0):
+        row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
-        for j in range(heights.shape[1]):
+        for j in range(len(row)):
             ey = ey0 + j * pitch_y
             cross = ex * dy - ey * dx
             away = cross * cross * inverse if square > 0.0 else ex * ex + ey * ey
@@ -149,15 +154,19 @@ def _ball_block(
             t = min(max(middle - lead * root, first), last)
             off = t - middle
             z = max(bottom, centre + dz * t - math.sqrt(max(0.0, inside - square * off * off)))
-            old = heights[i, j]
+            old = row[j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
-            heights[i, j] = new
+            row[j] = new
             largest[j] = max(largest[j], new)
 
 
 @njit(cache=True, nogil=True)
 def _flat_block(
     heights: FloatArray,
+    i0: int,
+    i1: int,
+    j0: int,
+    j1: int,
     ex0: float,
     ey0: float,
     pitch_x: float,
@@ -177,9 +186,10 @@ def _flat_block(
         tip = tip + min(0.0, dz)
         dz = 0.0
     r2 = radius * radius
-    for i in range(heights.shape[0]):
+    for i in range(i1 - i0):
+        row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
-        for j in range(heights.shape[1]):
+        for j in range(len(row)):
             ey = ey0 + j * pitch_y
             cross = ex * dy - ey * dx
             away = cross * cross * inverse if square > 0.0 else ex * ex + ey * ey
@@ -189,15 +199,19 @@ def _flat_block(
             first = max(0.0, middle - half)
             last = min(1.0, middle + half)
             z = max(bottom, tip + dz * (first if dz > 0.0 else last))
-            old = heights[i, j]
+            old = row[j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
-            heights[i, j] = new
+            row[j] = new
             largest[j] = max(largest[j], new)
 
 
 @njit(cache=True, nogil=True)
 def _round_block(
     heights: FloatArray,
+    i0: int,
+    i1: int,
+    j0: int,
+    j1: int,
     ex0: float,
     ey0: float,
     pitch_x: float,
@@ -214,16 +228,17 @@ def _round_block(
     square = dx * dx + dy * dy
     length = math.sqrt(square)
     radius = tool[6]
-    for i in range(heights.shape[0]):
+    for i in range(i1 - i0):
+        row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
-        for j in range(heights.shape[1]):
+        for j in range(len(row)):
             ey = ey0 + j * pitch_y
-            old = heights[i, j]
+            old = row[j]
             largest[j] = max(largest[j], old)
             if square == 0.0:
                 away = math.sqrt(ex * ex + ey * ey)
                 if away <= radius:
-                    heights[i, j] = min(old, max(bottom, tip + min(0.0, dz) + _profile(tool, away)))
+                    row[j] = min(old, max(bottom, tip + min(0.0, dz) + _profile(tool, away)))
                 continue
             q = abs(ex * dy - ey * dx) / length
             rest = radius * radius - q * q
@@ -255,7 +270,51 @@ def _round_block(
                         s = min(max(-s if slope > 0.0 else s, low), high)
             z = tip + (foot + s) * slope + _profile(tool, min(radius, math.sqrt(q * q + s * s)))
             if z < old:
-                heights[i, j] = max(bottom, z)
+                row[j] = max(bottom, z)
+
+
+@njit(cache=True, nogil=True)
+def _reached(
+    maxima: FloatArray,
+    near: NDArray[np.bool_],
+    bottom: int,
+    top: int,
+    ex: float,
+    ey0: float,
+    side_y: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    z0: float,
+    inverse: float,
+    window: float,
+    diagonal: float,
+    underside: float,
+    tool: FloatArray,
+) -> None:
+    """Which blocks of one row a tool on a line may reach: those nearer than its radius at the block's largest height.
+
+    Args:
+        maxima: largest height of each block of the row.
+        near: filled from ``bottom`` to ``top``.
+        ex, ey0: centre of the row's first block, seen from the start.
+        inverse: 1 / square of the level length, 0 for none.
+        window: part of the line within which the tool's reach covers some of a block.
+    """
+    down = min(0.0, dz) if inverse == 0.0 else 0.0
+    for j in range(bottom, top + 1):
+        ey = ey0 + j * side_y
+        middle = (ex * dx + ey * dy) * inverse
+        t = min(max(middle, 0.0), 1.0)
+        off_x, off_y = ex - t * dx, ey - t * dy
+        at = middle - window if dz > 0.0 else middle + window
+        lowest = z0 + down + (dz * min(max(at, 0.0), 1.0) if inverse > 0.0 else 0.0)
+        over = maxima[j] - lowest
+        arc = min(max(over, 0.0), tool[4])
+        wide = tool[0] + math.sqrt(max(0.0, arc * (2.0 * tool[1] - arc))) + max(0.0, over - tool[4]) * tool[2]
+        reach = min(wide, tool[6]) + diagonal
+        away = off_x * off_x + off_y * off_y
+        near[j] = (over > 0.0) & (maxima[j] > underside) & (away <= reach * reach)
 
 
 @njit(cache=True, nogil=True)
@@ -286,6 +345,7 @@ def cut_lines(
     reach_x, reach_y = 0.5 * (BLOCK - 1) * frame[2], 0.5 * (BLOCK - 1) * frame[3]
     diagonal = math.hypot(reach_x, reach_y) * (1.0 + 1e-12)
     largest = np.empty(BLOCK)
+    near = np.empty(maxima.shape[1], dtype=np.bool_)
     for k in range(len(starts)):
         x0, y0, z0 = starts[k, 0], starts[k, 1], starts[k, 2]
         dx, dy, dz = ends[k, 0] - x0, ends[k, 1] - y0, ends[k, 2] - z0
@@ -298,37 +358,73 @@ def cut_lines(
         window = (radius + diagonal) * math.sqrt(inverse)
         for i in range(left, right + 1):
             ex0 = frame[0] + i * side_x - x0
+            _reached(
+                maxima[i],
+                near,
+                bottom,
+                top,
+                ex0 + reach_x,
+                frame[1] + reach_y - y0,
+                side_y,
+                dx,
+                dy,
+                dz,
+                z0,
+                inverse,
+                window,
+                diagonal,
+                underside,
+                tool,
+            )
             for j in range(bottom, top + 1):
-                old = maxima[i, j]
-                if old <= underside or (old <= z0 and old <= z0 + dz):
+                if not near[j]:
                     continue
                 ey0 = frame[1] + j * side_y - y0
-                ex, ey = ex0 + reach_x, ey0 + reach_y
-                middle = (ex * dx + ey * dy) * inverse
-                t = min(max(middle, 0.0), 1.0)
-                away2 = (ex - t * dx) ** 2 + (ey - t * dy) ** 2
-                if away2 > (radius + diagonal) ** 2:
-                    continue
-                lowest = z0
-                if square == 0.0:
-                    lowest += min(0.0, dz)
-                elif dz > 0.0:
-                    lowest += dz * min(max(middle - window, 0.0), 1.0)
-                else:
-                    lowest += dz * min(max(middle + window, 0.0), 1.0)
-                near = max(0.0, math.sqrt(away2) - diagonal)
-                if lowest + _profile(tool, min(near, radius)) >= old:
-                    continue
-                block = heights[i * BLOCK : (i + 1) * BLOCK, j * BLOCK : (j + 1) * BLOCK]
+                i0, i1 = i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])
+                j0, j1 = j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])
                 largest[:] = -math.inf
                 if ball:
                     _ball_block(
-                        block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0 + radius, radius, underside, largest
+                        heights,
+                        i0,
+                        i1,
+                        j0,
+                        j1,
+                        ex0,
+                        ey0,
+                        frame[2],
+                        frame[3],
+                        dx,
+                        dy,
+                        dz,
+                        z0 + radius,
+                        radius,
+                        underside,
+                        largest,
                     )
                 elif flat:
-                    _flat_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, radius, underside, largest)
+                    _flat_block(
+                        heights,
+                        i0,
+                        i1,
+                        j0,
+                        j1,
+                        ex0,
+                        ey0,
+                        frame[2],
+                        frame[3],
+                        dx,
+                        dy,
+                        dz,
+                        z0,
+                        radius,
+                        underside,
+                        largest,
+                    )
                 else:
-                    _round_block(block, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, underside, largest)
+                    _round_block(
+                        heights, i0, i1, j0, j1, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, underside, largest
+                    )
                 maxima[i, j] = largest.max()
 
 
@@ -356,27 +452,43 @@ def cut_arcs(
         cx, cy, z0, path = arcs[k, 0], arcs[k, 1], arcs[k, 2], arcs[k, 3]
         begin, sweep = arcs[k, 4], arcs[k, 5]
         sx, sy = cx + path * math.cos(begin), cy + path * math.sin(begin)
-        far = path + radius
-        left = max(first_band, int(math.floor((cx - far - frame[0]) / side_x)))
-        right = min(last_band - 1, int(math.floor((cx + far - frame[0]) / side_x)))
-        bottom = max(0, int(math.floor((cy - far - frame[1]) / side_y)))
-        top = min(maxima.shape[1] - 1, int(math.floor((cy + far - frame[1]) / side_y)))
+        ex, ey = arcs[k, 6], arcs[k, 7]
+        low_x, high_x, low_y, high_y = min(sx, ex), max(sx, ex), min(sy, ey), max(sy, ey)
+        for quarter in range(4):
+            turn = quarter * 0.5 * math.pi - begin
+            turn = turn % (2.0 * math.pi) if sweep > 0.0 else (-turn) % (2.0 * math.pi)
+            if turn <= abs(sweep):
+                if quarter == 0:
+                    high_x = cx + path
+                elif quarter == 1:
+                    high_y = cy + path
+                elif quarter == 2:
+                    low_x = cx - path
+                else:
+                    low_y = cy - path
+        left = max(first_band, int(math.floor((low_x - radius - frame[0]) / side_x)))
+        right = min(last_band - 1, int(math.floor((high_x + radius - frame[0]) / side_x)))
+        bottom = max(0, int(math.floor((low_y - radius - frame[1]) / side_y)))
+        top = min(maxima.shape[1] - 1, int(math.floor((high_y + radius - frame[1]) / side_y)))
         for i in range(left, right + 1):
             for j in range(bottom, top + 1):
                 old = maxima[i, j]
                 if old <= underside or old <= z0:
                     continue
                 x, y = frame[0] + i * side_x + reach_x, frame[1] + j * side_y + reach_y
-                near = max(0.0, _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7]) - diagonal)
+                if abs(math.hypot(x - cx, y - cy) - path) > radius + diagonal:
+                    continue
+                near = max(0.0, _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, ex, ey) - diagonal)
                 if near > radius or z0 + _profile(tool, near) >= old:
                     continue
                 largest = -math.inf
                 for a in range(i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])):
                     for b in range(j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])):
-                        x, y = frame[0] + a * frame[2], frame[1] + b * frame[3]
-                        off = _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, arcs[k, 6], arcs[k, 7])
-                        if off <= radius:
-                            heights[a, b] = min(heights[a, b], max(underside, z0 + _profile(tool, off)))
+                        if heights[a, b] > z0:
+                            x, y = frame[0] + a * frame[2], frame[1] + b * frame[3]
+                            off = _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, ex, ey)
+                            if off <= radius:
+                                heights[a, b] = min(heights[a, b], max(underside, z0 + _profile(tool, off)))
                         largest = max(largest, heights[a, b])
                 maxima[i, j] = largest
 

@@ -420,10 +420,10 @@ def drop(
     for i in range(first, last):
         x, y = points[i, 0], points[i, 1]
         best, touched = floor, -1
-        column = int(math.floor((x - grid[0]) / grid[2]))
-        row = int(math.floor((y - grid[1]) / grid[2]))
-        if 0 <= column < columns and 0 <= row < rows:
-            cell = row * columns + column
+        # compared before they become whole numbers: a place may be far off, or no number at all
+        column, row = (x - grid[0]) / grid[2], (y - grid[1]) / grid[2]
+        if 0.0 <= column < columns and 0.0 <= row < rows:
+            cell = int(row) * columns + int(column)
             for k in range(begins[cell], begins[cell + 1]):
                 n = entries[k]
                 if n < face_count:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -43,21 +44,22 @@ class Strokes:
     @classmethod
     def of_moves(cls, moves: Iterable[Move], chord_mm: float = CHORD_MM) -> Strokes:
         """The motions of a program's moves, whatever their tool; a dwell is a stay at its place."""
-        return cls._of((m.start_mm, m.end_mm, m.arc, m.corners_mm(math.inf, chord_mm)) for m in moves)
+        return cls._of((m.start_mm, m.end_mm, m.arc, partial(m.corners_mm, math.inf, chord_mm)) for m in moves)
 
     @classmethod
     def of_path(cls, path: ToolPath, chord_mm: float = CHORD_MM) -> Strokes:
         """The motions of a tool path, rapid ones too."""
-        return cls._of((m.start_mm, m.end_mm, m.arc, m.chords_mm(chord_mm)) for m in path.moves)
+        return cls._of((m.start_mm, m.end_mm, m.arc, partial(m.chords_mm, chord_mm)) for m in path.moves)
 
     @classmethod
-    def _of(cls, motions: Iterable[tuple[FloatArray, FloatArray, Arc | None, FloatArray]]) -> Strokes:
+    def _of(cls, motions: Iterable[tuple[FloatArray, FloatArray, Arc | None, Callable[[], FloatArray]]]) -> Strokes:
         lines: list[tuple[FloatArray, FloatArray]] = []
         arcs: list[FloatArray] = []
         for start, end, arc, corners in motions:
             level = None if arc is None else _level_arc(start, end, arc)
             if level is None:
-                lines.append((corners[:-1], corners[1:]))
+                points = corners()
+                lines.append((points[:-1], points[1:]))
             else:
                 arcs.append(level)
         none = np.empty((0, 3))

@@ -33,9 +33,13 @@ def weld(points: NDArray[np.int64], ids: NDArray[np.int64], first: NDArray[np.in
     count = 0
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
-        mixed = (x * np.int64(73856093)) ^ (y * np.int64(19349663)) ^ (z * np.int64(83492791))
-        mixed = (mixed ^ (mixed >> np.int64(29))) * np.int64(668265261)
-        slot = (mixed ^ (mixed >> np.int64(17))) & np.int64(size - 1)
+        # shifts and exclusive ors only: products would overflow, which is loud without the compiler
+        mixed = x ^ (y << np.int64(21)) ^ (z << np.int64(42))
+        mixed ^= y ^ (z >> np.int64(7))
+        mixed ^= mixed << np.int64(13)
+        mixed ^= (mixed >> np.int64(7)) & np.int64(0x1FFFFFFFFFFFFFF)
+        mixed ^= mixed << np.int64(17)
+        slot = (mixed ^ (mixed >> np.int64(31))) & np.int64(size - 1)
         while True:
             known = table[slot]
             if known < 0:

@@ -149,6 +149,23 @@ def test_level_arcs_are_exact(text: str, sweep: float) -> None:
     assert off[:-4].max() < 1e-4
 
 
+def test_arcs_of_any_part_of_a_circle() -> None:
+    tool, rng = parse_tool("bull 2 r0.4"), np.random.default_rng(15)
+    arcs, lines = stock(), stock()
+    for _ in range(40):
+        centre, radius = rng.uniform((-4.0, -4.0), (14.0, 12.0)), rng.uniform(0.3, 9.0)
+        begin, sweep, z = rng.uniform(-4.0, 4.0), rng.uniform(-6.0, 6.0), rng.uniform(-1.0, 3.0)
+        angle = begin + sweep * np.linspace(0.0, 1.0, 3001)
+        path = np.column_stack(
+            (centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle), 0.0 * angle + z)
+        )
+        arcs.cut(tool, Strokes.of_moves([arc_move(path[0], path[-1], (*centre, z), sweep)]))
+        lines.cut(tool, Strokes.through(path))
+    off = np.sort(np.abs(arcs.heights_mm - lines.heights_mm).ravel())
+    assert off[:-6].max() < 1e-4
+    assert (arcs.heights_mm < 4.0).mean() > 0.5
+
+
 def arc_move(start: FloatArray, end: FloatArray, centre: tuple[float, float, float], sweep: float) -> Move:
     return Move(
         start_mm=start,

@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 from support.terrain import block, rough, terrain, waves
 
 from twin.arrays import FloatArray
+from twin.cam import drop_cutter
 from twin.cam.drop_cutter import EDGE, FACE, FLOOR, VERTEX, DropCutter
 from twin.cam.surface import surface_of, surface_of_mesh
+from twin.cam.threads import FEW, in_parts
 from twin.errors import MeshError, ToolError
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
@@ -203,6 +205,23 @@ def test_threads_do_not_change_a_bit() -> None:
     assert np.array_equal(one.drop(points), two.drop(points))
     assert np.array_equal(one.drop(points, threads=2), two.drop(points, threads=1))
     assert np.array_equal(one.contacts(points).kind, two.contacts(points).kind)
+
+
+def test_lists_that_grow_too_long_get_larger_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    triangles = terrain(rough, 12)
+    points = np.random.default_rng(14).uniform(-2.0, 8.0, (300, 2))
+    fine = DropCutter(triangles, "flat 6").drop(points)
+    monkeypatch.setattr(drop_cutter, "_MOST_ENTRIES", 2_000)
+    assert np.array_equal(DropCutter(triangles, "flat 6").drop(points), fine)
+
+
+def test_an_error_in_a_thread_is_told() -> None:
+    def work(first: int, last: int) -> None:
+        if first > 0:
+            raise ValueError(f"part from {first}")
+
+    with pytest.raises(ValueError, match="part from"):
+        in_parts(work, 2 * FEW, threads=2)
 
 
 def test_triangles_without_area_do_no_harm() -> None:
