@@ -6,7 +6,21 @@ python -m benchmarks
 import subprocess
 import sys
 
-STAGES = ("speed", "surface", "replay", "removal", "archive", "gcode", "offset", "paths", "drop_cutter", "dexel")
+STAGES = (
+    "speed",
+    "surface",
+    "replay",
+    "removal",
+    "archive",
+    "gcode",
+    "offset",
+    "paths",
+    "drop_cutter",
+    "dexel",
+    "mold",
+    "tour",
+    "mold_chain",
+)
 
 if __name__ == "__main__":
     for stage in STAGES:

@@ -26,6 +26,7 @@ from twin.cam.roughing import StageFeeds, Workspace
 from twin.cam.steep import SteepMap, level_lines
 from twin.cam.toolpath import ToolPath
 from twin.cam.tour import LinkSpeeds, order_pieces
+from twin.tools.shape import ToolShape
 
 #: Part of the chord tolerance that dividing rows may use; fitting has the rest.
 _SHARE = 0.3
@@ -210,8 +211,10 @@ def steep_chains(
     return chains
 
 
-def in_order(chains: Sequence[list[FloatArray]], space: Workspace, dynamics: Dynamics) -> Iterator[Pass]:
-    """The chains' runs as passes, chains in the order of a tour."""
+def in_order(
+    chains: Sequence[list[FloatArray]], tool: ToolShape, stock: Dexels, space: Workspace, dynamics: Dynamics
+) -> Iterator[Pass]:
+    """The chains' runs as passes, chains in the order of a tour; each knows the stock over its start."""
     if not chains:
         return
     ends = np.array([(chain[0][0, :2], chain[-1][-1, :2]) for chain in chains])
@@ -222,7 +225,10 @@ def in_order(chains: Sequence[list[FloatArray]], space: Workspace, dynamics: Dyn
     )
     tour = order_pieces(ends, space.low_mm[:2], speeds, two_way=False)
     for number in tour.order.tolist():
-        yield from (Pass(points_mm=run) for run in chains[number])
+        starts = np.array([run[0, :2] for run in chains[number]])
+        tops = stock_heights(stock, tool, starts)
+        for run, top in zip(chains[number], tops.tolist(), strict=True):
+            yield Pass(points_mm=run, top_mm=top if top > run[0, 2] else None)
 
 
 class RowWay:
@@ -278,10 +284,16 @@ def finishing(
     if options.steep_deg is not None:
         chart = SteepMap.of(cutter, low, high, options.pitch_mm, options.steep_deg)
     passes = list(
-        in_order(row_chains(scan_rows(cutter, low, high, options), cutter, stock, options, chart), space, dynamics)
+        in_order(
+            row_chains(scan_rows(cutter, low, high, options), cutter, stock, options, chart),
+            cutter.tool,
+            stock,
+            space,
+            dynamics,
+        )
     )
     if chart is not None:
-        passes += in_order(steep_chains(cutter, stock, options, chart), space, dynamics)
+        passes += in_order(steep_chains(cutter, stock, options, chart), cutter.tool, stock, space, dynamics)
     linking = LinkOptions(
         safe_z_mm=space.safe_z_mm,
         clearance_mm=space.clearance_mm,

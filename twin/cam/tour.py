@@ -25,7 +25,7 @@ METHODS: tuple[Method, ...] = ("greedy", "2-opt", "ils")
 #: Neighbours looked at from each end.
 _NEAR = 10
 #: Iterations between two looks at the clock.
-_CHUNK = 2000
+_CHUNK = 200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

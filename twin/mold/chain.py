@@ -172,7 +172,7 @@ class MoldChain:
             least_mm=table.least_mm,
             resolution_mm=table.resolution_mm,
             direction=table.direction,
-            search=Search(method=table.method, seed=table.seed, iterations=table.iterations),
+            search=Search(method=table.method, seed=table.seed, iterations=table.iterations, budget_s=table.budget_s),
             feeds=table.feeds,
         )
 

@@ -95,6 +95,9 @@ class Semi(StageTable):
     method: Literal["greedy", "2-opt", "ils"] = Field(default="ils", description="search for the order of cuts")
     seed: int = Field(default=1, ge=0, description="of the search; equal seeds give equal programs")
     iterations: int | None = Field(default=None, ge=0, description="of the search at each level; 5 a cut, at least 500")
+    budget_s: float | None = Field(
+        default=None, gt=0.0, description="longest search at each level, s; with it, programs depend on the machine"
+    )
 
 
 class Finish(StageTable):

@@ -58,6 +58,7 @@ def tables() -> dict[str, Any]:
     common = {"spindle_rpm": 8000, "plunge_mm_min": 500, "link_mm_min": 3000}
     return {
         "part": {"stl": "part.stl"},
+        "machine": {"clearance_mm": 0.3},
         "tools": [
             {"number": 1, "kind": "bull", "diameter_mm": 8.0, "corner_radius_mm": 1.0, "teeth": 3, "length_mm": 90.0}
             | {"flute_length_mm": 20.0},

@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from twin.arrays import FloatArray
+from twin.cam.dexel import Dexels
 from twin.cam.drop_cutter import DropCutter
 from twin.cam.machining_time import machining_time
 from twin.cam.pockets import subdivided
-from twin.cam.rest import grown
+from twin.cam.rest import grown, stock_heights
 from twin.cam.rooms import level_rooms
 from twin.cam.roughing import LevelWay, contour_roughing, roughing_levels
+from twin.cam.strokes import Strokes
 from twin.cam.toolpath import MoveKind, ToolPath
 from twin.mold import STAGES, MoldChain
 from twin.mold.table import rest_table, saved, times_table
@@ -68,9 +70,6 @@ def test_each_stage_leaves_less_and_finishing_leaves_scallops_and_fillets(chain:
     part = DropCutter(chain.surface, None).drop(points)
     reach = DropCutter(chain.surface, tool).drop(points)
     # the lowest place of a tool's underside at each dexel over all places of the tool: closing on the dexel grid
-    from twin.cam.dexel import Dexels
-    from twin.cam.strokes import Strokes
-
     closed = Dexels(stock.low_mm, stock.high_mm, 0.2, 5.0, -12.0)
     stays = np.column_stack((points, reach))
     closed.cut(tool, Strokes(stays, stays, np.empty((0, 8))))
@@ -113,17 +112,31 @@ def test_roughing_enters_by_helix_or_ramp_and_plunges_through_air_only(chain: Mo
     assert steepest <= chain.job.rough.ramp_deg + 1e-6
 
 
-def test_rapids_touch_no_stock(chain: MoldChain) -> None:
-    # each stage's rapids, as strokes of its tool, take nothing from the stock that the stage leaves
-    from twin.cam.strokes import Strokes
+def rapids_in_stock_mm(path: ToolPath, stock: Dexels) -> float:
+    """How deep rapids go into the stock as it is when they are run; the stock is cut by the path."""
+    deepest, cuts = 0.0, []
+    for move in path.moves:
+        if move.kind is not MoveKind.RAPID:
+            cuts.append(move)
+            continue
+        if cuts:
+            stock.cut(path.tool, Strokes.of_path(replace(path, moves=tuple(cuts))), threads=1)
+            cuts = []
+        at = subdivided(move.points_mm, 0.2)
+        heights = stock_heights(stock, path.tool, np.ascontiguousarray(at[:, :2]), threads=1)
+        deepest = max(deepest, float((heights - at[:, 2]).max()))
+    return deepest
 
+
+def test_rapids_touch_no_stock(chain: MoldChain) -> None:
+    before = chain.fresh_stock()
     for stage in STAGES:
-        path, stock = chain.stage(stage).path, chain.stage(stage).stock
-        moves = tuple(path.of_kind(MoveKind.RAPID))
-        lines = np.array([(m.start_mm, m.end_mm) for m in moves])
-        after = stock.copy()
-        after.cut(path.tool, Strokes(lines[:, 0], lines[:, 1], np.empty((0, 8))))
-        assert float((stock.heights_mm - after.heights_mm).max()) < 1e-6, stage
+        path = chain.stage(stage).path
+        assert rapids_in_stock_mm(path, before.copy()) < 1e-6, stage
+        before = chain.stage(stage).stock
+    before = chain.fresh_stock()
+    for path in (chain.conventional.rough, chain.conventional.semi):
+        assert rapids_in_stock_mm(path, before) < 1e-6
 
 
 def test_links_stay_in_the_room_of_their_level(chain: MoldChain) -> None:
