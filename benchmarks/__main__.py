@@ -17,7 +17,6 @@ STAGES = (
     "paths",
     "drop_cutter",
     "dexel",
-    "mold",
     "tour",
     "mold_chain",
 )
