@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +23,7 @@ class SurfaceWay:
     """Ways over a surface.
 
     Args:
-        surface: the part.
+        surface: makes the part's surface, when a way is first asked for.
         tool: the tool.
         allowance_mm: to be left on the part.
         remaining_mm: what is left on it by those before; None where it may be all of the stock.
@@ -32,7 +33,7 @@ class SurfaceWay:
 
     def __init__(
         self,
-        surface: Surface,
+        surface: Callable[[], Surface],
         tool: ToolShape,
         *,
         allowance_mm: float,
@@ -40,7 +41,8 @@ class SurfaceWay:
         floor_mm: float,
         top_mm: float,
     ) -> None:
-        self._surface, self._tool = surface, tool
+        self._make, self._tool = surface, tool
+        self._surface: Surface | None = None
         self._allowance, self._remaining = allowance_mm, remaining_mm
         self._floor, self._top = floor_mm, top_mm
         self._step = _STEP * tool.max_radius_mm
@@ -48,6 +50,8 @@ class SurfaceWay:
 
     def lowest_mm(self, xy_mm: FloatArray, left_mm: float) -> FloatArray:
         """Lowest tips over plan points, shape (n, 2), that leave so much on the part, shape (n,)."""
+        if self._surface is None:
+            self._surface = self._make()
         if left_mm not in self._cutters:
             tool = replace(
                 self._tool, corner_mm=self._tool.corner_mm + left_mm, height_mm=self._tool.height_mm + left_mm

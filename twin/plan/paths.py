@@ -20,7 +20,7 @@ from twin.cam.linking import LinkOptions, Pass, Way, link
 from twin.cam.offset import inflated_planes
 from twin.cam.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
 from twin.cam.sections import Sections, SlicedPart, slice_part
-from twin.cam.surface import surface_of
+from twin.cam.surface import Surface, surface_of_mesh
 from twin.cam.surface_way import SurfaceWay
 from twin.cam.tip_lines import Places, Profiles, tip_lines
 from twin.cam.to_nc import describe
@@ -32,6 +32,7 @@ from twin.geometry.slicing import mesh_sections
 from twin.plan.settings import PathSettings
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
+from twin.workpiece.from_mesh import Solid
 
 #: Told of how far the work has come: what is done, and how much of all.
 Report = Callable[[str, float], None]
@@ -161,7 +162,7 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
         )
         passes += scan_passes(rows, options)
     way = SurfaceWay(
-        surface_of(ground.part.mesh.vertices_mm[ground.part.mesh.triangles]),
+        lambda: _surface(ground.part.mesh),
         ground.tool,
         allowance_mm=settings.allowance_mm,
         remaining_mm=settings.remaining_mm,
@@ -171,6 +172,12 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
     if settings.remaining_mm is not None and settings.layers == 1:
         passes = [replace(p, top_mm=way.clear_z_mm(p.points_mm[0], p.points_mm[0])) for p in passes]
     return tuple(passes), way
+
+
+def _surface(mesh: Solid) -> Surface:
+    """The part's surface; vertices that only triangles without area had are left out."""
+    used, places = np.unique(mesh.triangles, return_inverse=True)
+    return surface_of_mesh(mesh.vertices_mm[used], places.reshape(-1, 3))
 
 
 def _approach(
