@@ -6,7 +6,20 @@ python -m benchmarks
 import subprocess
 import sys
 
-STAGES = ("speed", "surface", "replay", "removal", "archive", "gcode", "drop_cutter", "dexel", "tour", "mold_chain")
+STAGES = (
+    "speed",
+    "surface",
+    "replay",
+    "removal",
+    "archive",
+    "gcode",
+    "offset",
+    "paths",
+    "drop_cutter",
+    "dexel",
+    "tour",
+    "mold_chain",
+)
 
 if __name__ == "__main__":
     for stage in STAGES:

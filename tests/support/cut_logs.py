@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from support.edge_integral import Pass, log_rows
 
+from support.edge_integral import Pass, log_rows
 from twin.arrays import FloatArray
 from twin.identify.cuts_file import Cuts
 from twin.identify.load import cuts_from_dict

@@ -53,10 +53,7 @@ class Pass:
         """Shape (n, 3)."""
         radius = 0.5 * self.diameter
         flat = radius - self.corner
-        if self.corner > 0.0:
-            arc_end = self.corner * math.acos(max(0.0, 1.0 - self.axial / self.corner))
-        else:
-            arc_end = 0.0
+        arc_end = self.corner * math.acos(max(0.0, 1.0 - self.axial / self.corner)) if self.corner > 0.0 else 0.0
         length = arc_end + max(0.0, self.axial - self.corner)
         s = (np.arange(self.points) + 0.5) * length / self.points
         kappa = np.where(s < arc_end, s / self.corner if self.corner else 0.0, 0.5 * math.pi)

@@ -43,6 +43,25 @@ def box(low: Sequence[float], high: Sequence[float]) -> Solid:
     return prism(profile, low[1], high[1], "box")
 
 
+def pocket(half: float, inner: float, floor: float, bottom: float) -> Solid:
+    """A square block, its top at 0, with a square pocket in its middle; half sides, heights below 0."""
+    corners = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+
+    def ring(size: float, z: float) -> FloatArray:
+        return np.column_stack((size * corners, np.full(4, z)))
+
+    def between(a: FloatArray, b: FloatArray) -> list[FloatArray]:
+        after = [1, 2, 3, 0]
+        return [np.stack((a, a[after], b[after]), axis=1), np.stack((a, b[after], b), axis=1)]
+
+    def cap(a: FloatArray) -> FloatArray:
+        return np.array([[a[0], a[1], a[2]], [a[0], a[2], a[3]]])
+
+    low, top, mouth, deep = ring(half, bottom), ring(half, 0.0), ring(inner, 0.0), ring(inner, floor)
+    faces = [*between(low, top), *between(top, mouth), *between(mouth, deep), cap(deep), cap(low)[:, ::-1]]
+    return solid(np.concatenate(faces), "pocket")
+
+
 def write_stl(path: Path, part: Solid) -> Path:
     """A solid as a binary STL file."""
     path.write_bytes(stl_bytes(part.vertices_mm, part.triangles))

@@ -105,6 +105,14 @@ def test_forces_can_be_left_out(tmp_path: Path) -> None:
     assert without.text == job.text and without.stock == job.stock
 
 
+def test_the_measured_log_is_relative_to_the_job(tmp_path: Path) -> None:
+    table = {"file": "ap1.csv", "map": "x=-Fy,y=-Fx,z=Fz", "columns": ["t_s", "Fx", "Fy", "Fz"], "windows": ["4:4.02"]}
+    job = load_job(job_folder(tmp_path, measured=table))
+    assert job.measured is not None
+    assert job.measured.file == tmp_path / "ap1.csv"
+    assert job.measured.windows == ("4:4.02",) and job.measured.lag_s is None
+
+
 def test_a_job_is_frozen(tmp_path: Path) -> None:
     job = load_job(job_folder(tmp_path))
     with pytest.raises(ValidationError):

@@ -48,6 +48,20 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"machine__offsets__G55": [0, 0]}, "machine.offsets.G55 = [0, 0]: expected a list of three numbers"),
     ({"machine__offsets__G55": [0, "1", 0]}, 'machine.offsets.G55[1] = "1": expected a number'),
     ({"stock__wcs": "G55"}, 'stock.wcs = "G55": expected one of the offsets in machine.offsets: G54'),
+    ({"measured": {"map": "w=Fx"}}, 'measured.map = "w=Fx": expected e.g. x=-Fy,y=-Fx,z=Fz'),
+    ({"measured": {"windows": ["4:3"]}}, 'measured.windows[0] = "4:3": expected an end behind its begin, 4 s'),
+    (
+        {"measured": {"offset": "soon"}},
+        'measured.offset = "soon": expected air, none, BEGIN:END in seconds of the log, or X,Y,Z in N',
+    ),
+    (
+        {"measured": {"columns": 3}},
+        "measured.columns = 3: expected a list of texts (names of all columns, with units, in place of the file's own)",
+    ),
+    (
+        {"measured": {"lag_s": "auto"}},
+        'measured.lag_s = "auto": expected a number (how late the log is, s; found by cross-correlation if not given)',
+    ),
     ({"stock": {}}, "stock is empty: expected exactly one of box_mm, cylinder_mm, stl"),
     (
         {"stock__cylinder_mm": CYLINDER},

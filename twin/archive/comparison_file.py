@@ -78,6 +78,15 @@ def write_comparison(
         raise
 
 
+def is_comparison(path: str | PathLike[str]) -> bool:
+    """Whether a file is a comparison."""
+    try:
+        with Path(path).open("rb") as file:
+            return schemas.COMPARISON_PROFILE.encode() in file.read(64)
+    except OSError:
+        return False
+
+
 def read_comparison(path: str | PathLike[str]) -> tuple[ComparedForces, dict[str, Any]]:
     """The forces of a comparison's file, and its result.
 

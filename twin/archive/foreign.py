@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from mcap.records import Channel, Schema
 
 from twin.archive import schemas
-from twin.archive.frames import DAMAGE, RunFile
+from twin.archive.frames import RunFile
 from twin.archive.partial import reason
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
@@ -52,7 +51,9 @@ def read_numbers(path: str | PathLike[str], topic: str | None = None) -> tuple[s
             rows = list(_rows(reader, found))
     except OSError as error:
         raise ArchiveError(f"{path}: cannot be read: {reason(error)}") from error
-    except (McapError, *DAMAGE) as error:
+    except ArchiveError:
+        raise
+    except Exception as error:  # the libraries raise many kinds on damaged files
         raise ArchiveError(f"{path}: no MCAP file that can be read: {error}") from error
     if len(rows) < 2:
         raise ArchiveError(f"{path}: {len(rows)} messages on {found}, expected at least 2")

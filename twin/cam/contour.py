@@ -18,6 +18,7 @@ from twin.geometry.outline import (
     Area,
     grown,
     holds,
+    line_distance_mm,
     minus,
     nearest_area,
     outlines,
@@ -28,6 +29,8 @@ from twin.geometry.shapes import to_shape
 
 #: A cleared area needs no more layers than this; more are a mistake in the radial depth.
 MOST_LAYERS = 10_000
+#: Lines no farther apart than this many radial depths lie beside each other.
+_BESIDE = 1.5
 #: Part of the axial depth by which levels may be farther apart for rounding.
 _SLACK = 1e-9
 
@@ -98,34 +101,59 @@ def contour_passes(levels: Sequence[Level], options: ContourOptions) -> tuple[Pa
 def _level_passes(level: Level, options: ContourOptions, top_mm: float, layer: int) -> Iterator[Pass]:
     free = pieces(minus(options.window, level.area))
     lines: list[list[tuple[int, FloatArray]]] = [[] for _ in free]
+    if not free:
+        return
     for k in range(MOST_LAYERS if options.layers is None else options.layers):
         area = grown(level.area, k * options.radial_depth_mm, options.chord_mm)
         found = outlines(area, options.window)
         if not found:
             break
         for line in found:
-            lines[nearest_area(free, line[len(line) // 2])].append((k, line))
+            feed = line[::-1] if options.climb else line
+            lines[nearest_area(free, line[len(line) // 2])].append((k, feed))
     at: FloatArray | None = None
     for own in lines:
-        for one in _in_order(own, at):
-            line = one[::-1] if options.climb else one
-            line = _from_nearest(line, at)
-            at = line[-1]
-            entered = None if _outside(line[0], options.stock) else top_mm
-            points = np.column_stack((line, np.full(len(line), level.z_mm)))
+        for one in _in_order(own, options.radial_depth_mm, at):
+            at = one[-1]
+            entered = None if _outside(one[0], options.stock) else top_mm
+            points = np.column_stack((one, np.full(len(one), level.z_mm)))
             yield Pass(points_mm=points, top_mm=entered, layer=layer)
 
 
-def _in_order(lines: list[tuple[int, FloatArray]], at: FloatArray | None) -> Iterator[FloatArray]:
-    """Outer layers first; in a layer the line that is nearest to the end of the last one."""
-    left = list(lines)
+def _in_order(
+    lines: list[tuple[int, FloatArray]], radial_depth_mm: float, at: FloatArray | None
+) -> Iterator[FloatArray]:
+    """Every line after those of the next outer layer beside it; among those that may come, the nearest.
+
+    Args:
+        lines: with the numbers of their layers.
+        at: where the last line ended.
+    """
+    waits = _waiting(lines, _BESIDE * radial_depth_mm)
+    left = set(range(len(lines)))
     while left:
-        outermost = max(k for k, _ in left)
-        here = [i for i, (k, _) in enumerate(left) if k == outermost]
-        distances = [0.0 if at is None else float(np.linalg.norm(left[i][1] - at, axis=1).min()) for i in here]
-        _, line = left.pop(here[int(np.argmin(distances))])
+        ready = sorted(i for i in left if not waits[i] & left)
+        distances = [
+            0.0 if at is None else float(np.linalg.norm(_starts(lines[i][1]) - at, axis=1).min()) for i in ready
+        ]
+        nearest = ready[int(np.argmin(distances))]
+        left.remove(nearest)
+        line = _from_nearest(lines[nearest][1], at)
         yield line
         at = line[-1]
+
+
+def _starts(line: FloatArray) -> FloatArray:
+    """Where a line may begin: anywhere on a closed one, else at its first point."""
+    return line if np.all(line[0] == line[-1]) else line[:1]
+
+
+def _waiting(lines: list[tuple[int, FloatArray]], beside_mm: float) -> list[set[int]]:
+    """For each line the lines of the next outer layer that lie beside it."""
+    layers: dict[int, list[int]] = {}
+    for i, (k, _) in enumerate(lines):
+        layers.setdefault(k, []).append(i)
+    return [{j for j in layers.get(k + 1, []) if line_distance_mm(line, lines[j][1]) <= beside_mm} for k, line in lines]
 
 
 def _from_nearest(line: FloatArray, at: FloatArray | None) -> FloatArray:

@@ -67,7 +67,7 @@ class StructuringElement:
         """
         if self.corner_mm + allowance_mm < 0.0:
             raise ToolError(
-                f"allowance {allowance_mm:g} mm; expected not below {-self.corner_mm:g}, the tool's corner radius"
+                f"allowance {allowance_mm:g} mm; expected not below {0.0 - self.corner_mm:g}, the tool's corner radius"
             )
         return StructuringElement(
             disc_mm=self.disc_mm,

@@ -18,6 +18,8 @@ from twin.workpiece.store import PLANE_AXES
 
 #: A piece on a plane counts when its mean width is above this part of the pitch.
 _WIDTH_PITCHES = 0.01
+#: A piece is wide when its area is above this part of its outline's length squared (1/16 for a square).
+_WIDE = 0.005
 #: Pieces on neighbouring planes that are this many pitches apart belong together: thin regions may lie aslant.
 _NEAR_PITCHES = 3.0
 #: Places on the outline of a piece where its thickness is measured, at most.
@@ -66,7 +68,7 @@ def leftovers(
     pieces = Pieces.of(left, _WIDTH_PITCHES * pitch_mm)
     if len(pieces.shapes) == 0:
         return ()
-    points, of = pieces.outline_points(_MEASURED)
+    points, of = _measured(pieces)
     planes = planes_mm[pieces.planes]
     distance = _distances(points, planes[of], sections)
     labels = _connected(pieces, pitch_mm)
@@ -80,6 +82,12 @@ def leftovers(
             part = pieces.some(mine)
             found.append(_leftover(part, planes[mine], pitch_mm, sections.axis, float(distance[deepest]), at))
     return tuple(sorted(found, key=lambda r: -r.volume_mm3))
+
+
+def _measured(pieces: Pieces) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Places where thickness is measured, and the piece of each: on outlines, and in the middle of wide pieces."""
+    (points, of), (middles, fat) = pieces.outline_points(_MEASURED), pieces.middles(_WIDE)
+    return np.concatenate((points, middles)), np.concatenate((of, fat))
 
 
 def _leftover(

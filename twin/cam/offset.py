@@ -4,7 +4,8 @@ The section of an inflated part on a plane is the union of all neighbouring sect
 the structuring element has at its distance: sqrt(r^2 - d^2) for a ball. Shrinking is inflating what is not there.
 
 Conventions. With `StructuringElement.ball` the result is where the ball's centre may not be; with
-`StructuringElement.tool` where the tool's tip may not be (tools reach up without end). Rounding arcs are inscribed, with
+`StructuringElement.tool` where the tool's tip may not be. As tools reach up without end, that is everything below the
+inflated top; on planes across x and y it is found by `twin.cam.tip_lines`. Elsewhere rounding arcs are inscribed, with
 chords no further than ``chord_mm`` inside, and what lies between slices is left out: an inflated part is never too
 large, and a shrunk one never too small. How much it may lack is told by `bound_mm`.
 """
@@ -19,9 +20,10 @@ import numpy as np
 from twin.arrays import FloatArray, frozen
 from twin.cam.element import StructuringElement
 from twin.cam.sections import Sections, SlicedPart, outside_sections
+from twin.cam.tip_lines import tip_regions
 from twin.geometry.convolution import Radii, arc_segments, convolved
 from twin.geometry.region import Region
-from twin.geometry.shapes import Shape, Shapes, box_shape, grown_each, minus, to_region, to_shapes
+from twin.geometry.shapes import Shape, box_shape, grown_each, minus, to_region, to_shapes
 from twin.workpiece.stock import SliceSet
 from twin.workpiece.store import PLANE_AXES
 
@@ -95,17 +97,11 @@ def inflated_planes(
     Args:
         planes_mm: shape (n,), positions along the sections' axis.
     """
-    return tuple(to_region(s) for s in _inflated_shapes(sections, element, planes_mm, chord_mm, threads))
-
-
-def _inflated_shapes(
-    sections: Sections, element: StructuringElement, planes_mm: FloatArray, chord_mm: float, threads: int | None
-) -> Shapes:
-    shapes = to_shapes(sections.regions)
-    radii = towards(element, sections.axis)
-    return convolved(
-        shapes, sections.positions_mm, planes_mm, radii, arc_segments(element.radius_mm, chord_mm), threads
-    )
+    if not element.centred and sections.axis != 2:
+        return tip_regions(sections, element, planes_mm, chord_mm=chord_mm, threads=threads)
+    shapes, segments = to_shapes(sections.regions), arc_segments(element.radius_mm, chord_mm)
+    grown = convolved(shapes, sections.positions_mm, planes_mm, towards(element, sections.axis), segments, threads)
+    return tuple(to_region(s) for s in grown)
 
 
 def shrink(
@@ -167,7 +163,7 @@ def frame_boxes(slices: SliceSet, axis: int, element: StructuringElement) -> tup
 
 
 def towards(element: StructuringElement, axis: int) -> Radii:
-    """Radii by which sections of a part are inflated, from their heights above a plane of the tool's reference point."""
+    """Radii that a part's sections are inflated by, from their heights above a plane of the tool's reference point."""
     return element.z_radii_mm if axis == 2 else element.ball_radii_mm
 
 

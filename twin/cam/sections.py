@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry.region import Region
@@ -16,6 +18,8 @@ from twin.workpiece.store import PLANE_AXES
 
 #: A face lies across an axis when its normal has at least this component along it.
 _ACROSS = 1.0 - 1e-9
+#: Edges are sharp from this angle between the normals beside them.
+_SHARP_RAD = math.radians(10.0)
 #: Sections of such faces are cut this far inside the material, and stand for the face itself.
 _INSIDE_MM = 2e-5
 
@@ -54,8 +58,8 @@ class SlicedPart:
     Attributes:
         mesh: the solid that was cut.
         slices: evenly spaced sections in three directions.
-        faces: for every axis, sections just inside of the faces that lie across it. Even slices know such a face to
-            half a pitch only; with these it is known exactly.
+        faces: for every axis, sections just inside of the faces that lie across it, and beside sharp edges that do.
+            Even slices know these to half a pitch only; with the added ones they are known exactly.
     """
 
     mesh: Solid
@@ -85,8 +89,12 @@ def slice_part(part: Path | str | Solid, pitch_mm: float) -> SlicedPart:
 
 
 def face_sections(mesh: Solid, axis: int) -> Sections:
-    """Sections at the faces that lie across an axis, cut just inside the material."""
-    return _beside_faces(mesh, axis, _INSIDE_MM)
+    """Sections at the faces that lie across an axis, cut just inside the material, and on both sides of sharp edges."""
+    faces, edges = _beside_faces(mesh, axis, _INSIDE_MM), edge_levels(mesh, axis)
+    if len(edges) == 0:
+        return faces
+    cuts = np.sort(np.concatenate((edges - _INSIDE_MM, edges + _INSIDE_MM)))
+    return faces.joined(_cut(mesh, axis, cuts, np.repeat(edges, 2)))
 
 
 def outside_sections(mesh: Solid, axis: int) -> Sections:
@@ -97,11 +105,15 @@ def outside_sections(mesh: Solid, axis: int) -> Sections:
 def _beside_faces(mesh: Solid, axis: int, inwards_mm: float) -> Sections:
     low, high = face_levels(mesh, axis)
     cuts = np.concatenate((low + inwards_mm, high - inwards_mm))
-    positions = np.concatenate((low, high))
     order = np.argsort(cuts, kind="stable")
+    return _cut(mesh, axis, cuts[order], np.concatenate((low, high))[order])
+
+
+def _cut(mesh: Solid, axis: int, cuts_mm: FloatArray, positions_mm: FloatArray) -> Sections:
+    """Sections at increasing cuts, which stand for other positions close by."""
     u, v = PLANE_AXES[axis]
-    regions = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (axis, u, v), cuts[order])
-    return Sections(axis=axis, positions_mm=positions[order], regions=regions)
+    regions = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (axis, u, v), cuts_mm)
+    return Sections(axis=axis, positions_mm=positions_mm, regions=regions)
 
 
 def face_levels(mesh: Solid, axis: int) -> tuple[FloatArray, FloatArray]:
@@ -112,3 +124,29 @@ def face_levels(mesh: Solid, axis: int) -> tuple[FloatArray, FloatArray]:
     flat = (np.abs(cross[:, axis]) >= _ACROSS * size) & (size > 0.0)
     heights, up = a[flat, axis], cross[flat, axis] > 0.0
     return np.unique(heights[~up]), np.unique(heights[up])
+
+
+def edge_levels(mesh: Solid, axis: int) -> FloatArray:
+    """Positions of sharp edges that lie across an axis, but for those of faces that do: ridges, rims of cones.
+
+    Even slices miss the top of such an edge by up to half a pitch times the slope beside it.
+    """
+    ends = mesh.vertices_mm[mesh.edges.ends, axis]
+    level = np.flatnonzero(ends[:, 0] == ends[:, 1])
+    number = np.full(len(ends), -1, dtype=np.int64)
+    number[level] = np.arange(len(level))
+    triangles, sides = np.nonzero(number[mesh.edges.sides] >= 0)
+    own = number[mesh.edges.sides[triangles, sides]]
+    normals = _normals(mesh, triangles)
+    summed = np.stack([np.bincount(own, weights=normals[:, i], minlength=len(level)) for i in range(3)], axis=1)
+    # two unit normals at an angle add up to 2 cos(angle / 2)
+    sharp = np.linalg.norm(summed, axis=1) < 2.0 * math.cos(0.5 * _SHARP_RAD)
+    positions: FloatArray = np.unique(ends[level[sharp], 0])
+    return np.setdiff1d(positions, np.concatenate(face_levels(mesh, axis)))
+
+
+def _normals(mesh: Solid, triangles: NDArray[np.int64]) -> FloatArray:
+    """Unit normals of some triangles."""
+    a, b, c = (mesh.vertices_mm[mesh.triangles[triangles, i]] for i in range(3))
+    cross = np.cross(b - a, c - a)
+    return np.asarray(cross / np.maximum(np.linalg.norm(cross, axis=1, keepdims=True), 1e-300))

@@ -20,9 +20,13 @@ from twin.cam import tip_line_kernels as kernels
 from twin.cam.element import StructuringElement
 from twin.cam.sections import Sections
 from twin.cam.threads import in_parts
+from twin.geometry.clip import DECIMALS, LEAST_AREA_MM2
+from twin.geometry.region import Region, signed_area_mm2
 
 #: A rough cell is cut into this many.
 _FINER = 16
+#: Distance of the places of `tip_regions`, in square roots of chord times radius: an arc's own chord would be sqrt(8).
+_PLACES = 2.0
 #: Change of slope that makes an inner corner, and slope that makes a wall.
 _CORNER = 0.02
 _WALL = 50.0
@@ -63,6 +67,7 @@ class Profiles:
         positions_mm: shape (m,), increasing.
         segments, segment_begins, corners, corner_begins: see `twin.cam.tip_line_kernels.profile_pieces`.
         low_mm, high_mm: range along the lines that the sections fill.
+        floor_mm: lowest point of the sections.
     """
 
     axis: int
@@ -73,6 +78,7 @@ class Profiles:
     corner_begins: NDArray[np.int64]
     low_mm: float
     high_mm: float
+    floor_mm: float
 
     @property
     def arrays(self) -> tuple[FloatArray, NDArray[np.int64], FloatArray, NDArray[np.int64], FloatArray]:
@@ -105,6 +111,7 @@ class Profiles:
             corner_begins=corner_begins,
             low_mm=low,
             high_mm=high,
+            floor_mm=float(points[:, 1].min()) if len(points) else 0.0,
         )
 
 
@@ -215,6 +222,43 @@ def tip_lines(
         order = np.argsort(u, kind="stable")
         lines.append(_with_walls(_with_corners(np.column_stack((u[order], z[order])))))
     return lines
+
+
+def tip_regions(
+    sections: Sections,
+    element: StructuringElement,
+    planes_mm: FloatArray,
+    *,
+    chord_mm: float,
+    threads: int | None = None,
+) -> tuple[Region, ...]:
+    """What lies below the lines of the tip, down to the part's lowest point: where the tip of a tool may not be.
+
+    Args:
+        sections: across x or y.
+        chord_mm: how far chords may stand off.
+    """
+    profiles = Profiles.of(sections)
+    radius, floor = element.radius_mm, profiles.floor_mm
+    places = Places.between(profiles.low_mm - radius, profiles.high_mm + radius, _PLACES * math.sqrt(chord_mm * radius))
+    lines = tip_lines(profiles, element, planes_mm, places, floor, chord_mm=chord_mm, smooth=False, threads=threads)
+    return tuple(Region.of(*_below(line, floor)) for line in lines)
+
+
+def _below(line: FloatArray, floor_mm: float) -> list[FloatArray]:
+    """The areas between a line and the floor as rings, counter-clockwise."""
+    high = np.concatenate(([False], line[:, 1] > floor_mm, [False]))
+    changes = np.flatnonzero(np.diff(high.astype(np.int8)))
+    rings = []
+    for first, last in zip(changes[::2], changes[1::2], strict=True):
+        run = line[first:last]
+        before = line[first - 1] if first > 0 else np.array((run[0, 0], floor_mm))
+        after = line[last] if last < len(line) else np.array((run[-1, 0], floor_mm))
+        ring = np.round(np.vstack((before, run, after))[::-1], DECIMALS)
+        ring = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
+        if len(ring) >= 3 and signed_area_mm2(ring) > LEAST_AREA_MM2:
+            rings.append(ring)
+    return rings
 
 
 def _rough(heights: FloatArray, step_mm: float, chord_mm: float) -> NDArray[np.bool_]:

@@ -13,7 +13,7 @@ from enum import StrEnum
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gcode.events import PLANE_AXES
 from twin.arrays import FloatArray, frozen
@@ -225,8 +225,3 @@ def arc_sweep_rad(start_mm: FloatArray, end_mm: FloatArray, centre_mm: FloatArra
     sign = 1.0 if turns > 0 else -1.0
     one = (sign * (b - a)) % math.tau or math.tau
     return sign * (one + math.tau * (abs(turns) - 1))
-
-
-def kinds_of(path: ToolPath) -> NDArray[np.object_]:
-    """The kind of every move, shape (n,)."""
-    return np.array([m.kind for m in path.moves], dtype=object)

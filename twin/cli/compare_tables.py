@@ -33,11 +33,12 @@ def print_comparison(console: Console, found: Comparison) -> None:
     console.print()
 
 
-def window_name(window: WindowResult) -> str:
-    """``4.00–4.02 s``, or that it is the whole overlap."""
+def window_name(window: WindowResult, *, short: bool = False) -> str:
+    """``4.00–4.02 s``, and that it is the whole overlap; ``4.00–4.02`` where it is to be short."""
     begin, end = window.span_s
     decimals = 3 if end - begin < 1.0 and (round(1e3 * begin) % 10 or round(1e3 * end) % 10) else 2
-    return f"{begin:.{decimals}f}–{end:.{decimals}f} s" + (" (whole)" if window.whole else "")
+    text = f"{begin:.{decimals}f}–{end:.{decimals}f}"
+    return text if short else f"{text} s{' (whole)' if window.whole else ''}"
 
 
 def print_batch(console: Console, rows: Sequence[Row]) -> None:
@@ -88,7 +89,7 @@ def _errors(found: Comparison) -> Table:
 
 def _details(found: Comparison) -> Table:
     heads = (
-        "window",
+        "window, s",
         "",
         "RMS",
         "bias",
@@ -110,7 +111,7 @@ def _details(found: Comparison) -> Table:
                 column((e.measured_peak_n, e.simulated_peak_n)),
             )
             made.add_row(
-                window_name(window) if not index else "",
+                window_name(window, short=True) if not index else "",
                 f"F{e.axis}" if e.axis in "xyz" else "F",
                 digits(e.rms_n),
                 digits(e.bias_n),
@@ -127,7 +128,7 @@ def _details(found: Comparison) -> Table:
 
 def _harmonics(found: Comparison) -> Table:
     """Measured and simulated amplitude at the first multiples of the tooth-passing frequency, and between them."""
-    heads = ("window", "Hz", "tooth", *(f"F{a} {what}" for a in found.log.axes for what in ("meas.", "simul.")))
+    heads = ("window, s", "Hz", "tooth", *(f"F{a} {what}" for a in found.log.axes for what in ("meas.", "simul.")))
     made = table(*heads, numbers=" >>" + ">>" * len(found.log.axes))
     for window in found.windows:
         orders = sorted({e.order for e in window.lines if (e.tooth_order or 1) <= _MOST_LINES})
@@ -135,7 +136,7 @@ def _harmonics(found: Comparison) -> Table:
             found_lines = [e for e in window.lines if e.order == order]
             tooth = found_lines[0].tooth_order
             cells = [digits(v) for e in found_lines for v in (e.measured_n, e.simulated_n)]
-            name = window_name(window) if not index else ""
+            name = window_name(window, short=True) if not index else ""
             made.add_row(name, f"{found_lines[0].hz:.1f}", f"{tooth}x" if tooth else "runout", *cells)
     return made
 

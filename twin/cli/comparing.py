@@ -69,7 +69,7 @@ def run_one(run: Path, measured: Path | None, asked: Asked, outputs: Outputs) ->
     from twin.cli.console import results, warn
 
     job = _job_settings(run)
-    log = measured or (Path(job["file"]) if "file" in job else None)
+    log = measured or _job_log(run, job)
     if log is None:
         raise CompareError(f"{run}: no log given, and its job has no measured.file; expected RUN.mcap MEASURED")
     found = compare_files(run, log, settings_of(asked, job))
@@ -163,6 +163,15 @@ def settings_of(asked: Asked, job: Mapping[str, str]) -> ask.CompareSettings:
         filter_both=asked.filter_both,
         read=read,
     )
+
+
+def _job_log(run: Path, job: Mapping[str, str]) -> Path | None:
+    """The job's log: where the job said, else beside the run or in the folder above, for runs that were moved."""
+    if "file" not in job:
+        return None
+    told = Path(job["file"])
+    places = (told, run.parent / told.name, run.parent.parent / told.name)
+    return next((p for p in places if p.is_file()), told)
 
 
 def _job_settings(run: Path) -> dict[str, str]:

@@ -37,7 +37,7 @@ def print_identified(console: Console, cuts: Cuts, result: Identified, *, verbos
     console.print(_quality(result), "\n", markup=False, sep="")
     console.print("Correlation of the errors", style="bold")
     console.print(_correlation(result))
-    console.print("\nMean force on the tool, N: measured, fitted, measured less fitted", style="bold")
+    console.print("\nMean force on the tool, N: measured, and measured less fitted (Δ)", style="bold")
     console.print(_cuts(result.cuts))
     if any(cut.measured.window_s for cut in result.cuts):
         console.print("\nWhat the logs were taken for", style="bold")
@@ -98,13 +98,13 @@ def _correlation(result: Identified) -> Table:
 
 def _cuts(cuts: Sequence[CutResult]) -> Table:
     waves = any(cut.phase_rad is not None for cut in cuts)
-    headings = [f"{what}{axis}" for axis in _AXES for what in ("F", "fit ", "Δ")]
+    headings = [f"{what}{axis}" for axis in _AXES for what in ("F", "Δ")]
     table = _table("cut", *headings, *(["waveform RMS"] if waves else []))
     for cut in cuts:
         numbers = []
         for axis in range(3):
             measured, fitted = float(cut.measured.mean_n[axis]), float(cut.fitted_n[axis])
-            numbers += [_newtons(measured), _newtons(fitted), _newtons(measured - fitted, signed=True)]
+            numbers += [_newtons(measured), _newtons(measured - fitted, signed=True)]
         error = cut.waveform_error_n()
         name = Text(cut.name + (" (held out)" if cut.held_out else ""), style="italic" if cut.held_out else "")
         table.add_row(name, *numbers, *([_newtons(error) if error is not None else "-"] if waves else []))
@@ -129,7 +129,7 @@ def _logs(cuts: Sequence[CutResult]) -> Table:
 def _table(*headings: str) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for i, heading in enumerate(headings):
-        table.add_column(heading, justify="left" if i == 0 else "right", no_wrap=True)
+        table.add_column(heading, justify="left" if i == 0 else "right", no_wrap=i > 0, overflow="fold")
     return table
 
 

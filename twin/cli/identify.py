@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -72,13 +74,29 @@ def identify(
         plot = out.with_suffix(".png")
     _check_suffixes(out, plot)
     refuse_existing([p for p in (out, plot) if p is not None], force=force)
-    result = find(cuts, method.value if method is not None else None)
+    with _said() as say:
+        result = find(cuts, method.value if method is not None else None, say)
     _write(result, out, plot, force=force)
     if as_json:
         _print_json(result, out, plot)
     else:
         _print(cuts, result, {"Coefficients": out, "Plot": plot}, verbose=verbose)
     _warn(result)
+
+
+@contextmanager
+def _said() -> Iterator[Callable[[str], None]]:
+    """What is being done, on a terminal."""
+    from rich.markup import escape
+
+    from twin.cli.console import errors
+
+    console = errors()
+    if not console.is_terminal:
+        yield lambda _: None
+        return
+    with console.status("") as status:
+        yield lambda text: status.update(escape(text))
 
 
 def _check_suffixes(out: Path | None, plot: Path | None) -> None:

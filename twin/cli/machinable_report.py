@@ -31,7 +31,9 @@ def print_report(
     low, high = sliced.slices.low_mm, sliced.slices.high_mm
     size = " x ".join(f"{s:.5g}" for s in high - low)
     pitch = float(sliced.slices.pitch_mm.max())
-    console.print(Text(f"{part}: {size} mm, {len(sliced.mesh.triangles)} triangles, slices {pitch:.4g} mm apart"))
+    console.print(
+        Text(f"{part}: {size} mm, {len(sliced.mesh.triangles)} triangles, slices {pitch:.4g} mm apart"), soft_wrap=True
+    )
     if reaches:
         console.print()
         console.print(_tools_table(reaches))

@@ -64,9 +64,10 @@ def paths(
     zigzag: Annotated[
         bool | None, _option("scan: rows to and fro, or all one way [zigzag].", "--zigzag/--one-way")
     ] = None,
-    climb: Annotated[bool | None, _option("Climb or conventional milling [climb].", "--climb/--conventional")] = None,
+    climb: Annotated[bool | None, _option("Climb or conventional [climb].", "--climb/--conventional")] = None,
     region: Annotated[
-        tuple[float, float, float, float] | None, _option("Where the tip may be: X0 Y0 X1 Y1 [the part's box].")
+        tuple[float, float, float, float] | None,
+        _option("Where the tip may be: X0 Y0 X1 Y1 [the box of part or stock]."),
     ] = None,
     overhang: Annotated[float | None, _option("How far beyond it, mm [scan 0, contour the tool's radius].")] = None,
     floor_z: Annotated[float | None, _option("Lowest tip, mm [the part's lowest point].")] = None,

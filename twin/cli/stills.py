@@ -20,7 +20,9 @@ _COLORS: dict[MoveKind, tuple[int, int, int]] = {
     MoveKind.CUT: (50, 130, 230),
     MoveKind.RETRACT: (150, 150, 160),
 }
-_PART = np.array((190, 196, 204, 255), dtype=np.uint8)
+_PART = (170, 176, 184)
+#: Places that are named in the scene.
+_NAMED = 12
 #: Colours from gouge over right to excess.
 _MAP = np.array([(178, 24, 43), (239, 138, 98), (235, 235, 235), (103, 169, 207), (33, 102, 172)], dtype=np.float64)
 
@@ -37,22 +39,35 @@ def path_still(path: ToolPath, part: Solid) -> Still:
         for kind, color in _COLORS.items()
         if any(True for _ in path.of_kind(kind))
     ]
-    return Still(meshes=[_mesh(part)], lines=lines, text="\n".join((f"# {path.name}", *path.notes)))
+    return Still(
+        meshes=[_mesh(part)], lines=lines, text="\n".join((f"# {path.name}", "", *(f"- {n}" for n in path.notes)))
+    )
 
 
-def deviation_still(found: Deviation, part: Solid, text: str) -> Still:
+def deviation_still(found: Deviation, part: Solid, title: str) -> Still:
     """Points of the machined surface coloured by deviation, the part, and the places out of tolerance by name."""
+    text = "\n".join(
+        (
+            f"# {title}",
+            "",
+            f"- deepest gouge {1000.0 * found.worst_gouge_mm:.1f} µm, allowed {1000.0 * found.tolerance_mm:g}",
+            f"- largest excess {1000.0 * found.worst_excess_mm:.1f} µm, allowed {1000.0 * found.excess_mm:g}",
+            f"- {100.0 * found.within:.2f} % of the machined area within both",
+            f"- rays {found.pitch_mm:.3g} mm apart, distances known to {1000.0 * found.resolution_mm:.1f} µm",
+            "- red: gone, white: right, blue: left; full at twice the larger bound",
+        )
+    )
     points = StillPoints(
         entity="deviation",
         points_mm=found.points_mm,
         colors=deviation_colors(found.deviation_mm, max(found.tolerance_mm, found.excess_mm)),
         radius_mm=0.5 * found.pitch_mm,
     )
-    worst = found.places[:50]
+    worst = found.places[:_NAMED]
     named = StillPoints(
         entity="places",
         points_mm=np.array([p.point_mm for p in worst]).reshape(-1, 3),
-        colors=np.tile(np.array((20, 20, 20), dtype=np.uint8), (len(worst), 1)),
+        colors=np.tile(np.array((250, 210, 60), dtype=np.uint8), (len(worst), 1)),
         radius_mm=2.0 * found.pitch_mm,
         labels=[f"{p.kind} {p.worst_mm:.3f} mm" for p in worst],
     )
@@ -69,5 +84,4 @@ def deviation_colors(deviation_mm: FloatArray, end_mm: float) -> Colors:
 
 
 def _mesh(part: Solid) -> StillMesh:
-    colors = np.tile(_PART, (len(part.vertices_mm), 1))
-    return StillMesh(entity="part", vertices_mm=part.vertices_mm, triangles=part.triangles, colors=colors)
+    return StillMesh(entity="part", vertices_mm=part.vertices_mm, triangles=part.triangles, color=_PART)

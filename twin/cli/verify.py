@@ -71,8 +71,7 @@ def verify(
         from twin.cli.stills import deviation_still
         from twin.sinks.rerun_still import write_still
 
-        text = f"# {job_file.name} against {part.name}"
-        write_still(rrd, deviation_still(found, design, text), force=force)
+        write_still(rrd, deviation_still(found, design, f"{job_file.name} against {part.name}"), force=force)
     if as_json:
         _print_json(found, collisions, {"job": job_file, "part": part, "picture": plot, "recording": rrd})
     elif not quiet:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -69,19 +70,24 @@ def _um(length_mm: float) -> str:
     return f"{1000.0 * length_mm:.1f}"
 
 
+def _number(value: float) -> float | None:
+    """A number that JSON has; None where nothing at all is left of the part."""
+    return value if math.isfinite(value) else None
+
+
 def deviation_object(found: Deviation, collisions: Sequence[Collision]) -> dict[str, Any]:
     """The object of ``--json``."""
     return {
         "within_tolerance": found.gouge_ok and found.excess_ok,
         "tolerance_mm": found.tolerance_mm,
         "excess_allowed_mm": found.excess_mm,
-        "worst_gouge_mm": found.worst_gouge_mm,
+        "worst_gouge_mm": _number(found.worst_gouge_mm),
         "worst_excess_mm": found.worst_excess_mm,
         "share_within": found.within,
         "percentiles_mm": {f"{100.0 * s:g}": float(q) for s, q in zip(SHARES, found.quantiles_mm(), strict=True)},
         "gouged_mm3": found.gouged_mm3,
         "left_mm3": found.left_mm3,
-        "lost_mm": found.lost_mm,
+        "lost_mm": _number(found.lost_mm),
         "machined_area_mm2": float(found.area_mm2.sum()),
         "resolution_mm": found.resolution_mm,
         "ray_pitch_mm": found.pitch_mm,

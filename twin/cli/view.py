@@ -16,7 +16,12 @@ def view(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a recording that is there.")] = False,
 ) -> None:
-    """Show an archived run in rerun, as it looked while it was computed."""
+    """Show an archived run in rerun, as it looked while it was computed; or an archived comparison."""
+    from twin.archive.comparison_file import is_comparison
+
+    if is_comparison(run):
+        _comparison(run, rrd, force=force)
+        return
     from twin.archive import read_run
     from twin.cli.console import results
     from twin.cli.outputs import opened
@@ -33,5 +38,20 @@ def view(
             write(record)
             if isinstance(record, Step):
                 line.at(record.t_s, record.nc_line)
+    if rrd is not None:
+        results().print(f"Recording  {rrd}", markup=False, soft_wrap=True)
+
+
+def _comparison(path: Path, rrd: Path | None, *, force: bool) -> None:
+    """Measured and simulated forces of a comparison."""
+    from twin.archive.comparison_file import read_comparison
+    from twin.cli.console import results
+    from twin.errors import ArchiveError
+    from twin.sinks.rerun_compare import show_comparison
+
+    if rrd is not None and rrd.exists() and not force:
+        raise ArchiveError(f"{rrd}: is there already; replace it with --force")
+    forces, _ = read_comparison(path)
+    show_comparison(forces, rrd=rrd, spawn=rrd is None)
     if rrd is not None:
         results().print(f"Recording  {rrd}", markup=False, soft_wrap=True)

@@ -14,7 +14,7 @@ from twin.arrays import FloatArray
 from twin.compare.run_forces import RunForces
 from twin.errors import CompareError
 from twin.measured.log import AXES, ForceLog, Gap
-from twin.measured.uniform import outside_gaps
+from twin.measured.uniform import outside_gaps, richest
 
 #: An overlap shorter than this part of the shorter record counts as none.
 _LEAST_OVERLAP = 0.3
@@ -26,10 +26,15 @@ _AS_LONG = 0.9
 _REFINED = 3
 #: ... and then neighbours a tooth period away are tried, at most so many on a side.
 _CLIMBED = 40
+#: Delays that fit as well are far apart when they lie this part of the log from each other; then those that reach the
+#: best to this part are taken for equals.
+FAR_RIVALS = 0.25
+_EQUAL = 0.998
 #: Most samples that are correlated over all delays; longer records are thinned out first.
-_MOST_SAMPLES = 1 << 22
-#: The simulation is sampled so many times finer before it is band-limited to the log's rate.
+_MOST_SAMPLES = 1 << 20
+#: The simulation is sampled so many times finer, and at this rate at least, before it is band-limited to the log's.
 _FINER = 4
+_FINE_HZ = 20000.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,21 +55,24 @@ class Delay:
 def simulated_at_rate(run: RunForces, begin_s: float, count: int, rate_hz: float) -> FloatArray:
     """Shape (count, 3), the run's force on an even grid, band-limited to its rate."""
     pad = 16
-    fine = run.at(begin_s + (np.arange((count + 2 * pad) * _FINER) / _FINER - pad) / rate_hz)
-    return np.asarray(signal.resample_poly(fine, 1, _FINER, axis=0)[pad : pad + count])
+    finer = max(_FINER, int(np.ceil(_FINE_HZ / rate_hz)))
+    fine = run.at(begin_s + (np.arange((count + 2 * pad) * finer) / finer - pad) / rate_hz)
+    return np.asarray(signal.resample_poly(fine, 1, finer, axis=0)[pad : pad + count])
 
 
-def find_delay(run: RunForces, log: ForceLog, within_s: float | None = None) -> Delay:
+def find_delay(run: RunForces, log: ForceLog, within_s: float | None = None, windows: Sequence[Gap] = ()) -> Delay:
     """The delay at which log and run correlate best.
 
     For every delay the correlation coefficient over the overlap is taken, all measured axes together, each less its
     mean there. Weighted by the square root of the overlap, so that a short chance likeness does not win, it tells
     about where to look; among the peaks that are about as good there and overlap about as long, the best few are
-    refined by the maximum of the band-limited correlation, and the highest coefficient wins.
+    refined by the maximum of the band-limited correlation, and the highest coefficient wins. Where equals lie far
+    apart, for the cut is steady, the one is taken that covers the windows and is nearest to 0.
 
     Args:
         log: evenly sampled.
         within_s: only delays up to this size are looked at.
+        windows: where the two are to be compared, on the run's clock.
 
     Raises:
         CompareError: no delay within reach has an overlap.
@@ -84,6 +92,10 @@ def find_delay(run: RunForces, log: ForceLog, within_s: float | None = None) -> 
     shared = _shared(run, log, fine)
     found = [_pearson(run, log, axes, lag, shared) for lag in fine]
     lag = _climbed(run, log, axes, fine[int(np.argmax(found))], within_s)
+    if max(abs(float(lags[p]) - lag) for p in peaks) > FAR_RIVALS * log.duration_s:
+        equals = [float(lags[p]) for p in peaks if _top(scores, p) >= _EQUAL * _top(scores, likely[0])]
+        chosen = min(equals, key=lambda rival: (not _covers(log, rival, windows), abs(rival)), default=lag)
+        lag = _refined(run, log, axes, chosen, 1.0 / grid.rate_hz)
     rivals = sorted((float(lags[p]) for p in peaks), key=lambda rival: abs(rival - lag))[1:]
     return Delay(lag_s=lag, score=_pearson(run, log, axes, lag), rivals_s=tuple(rivals))
 
@@ -158,7 +170,8 @@ def _refined(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, r
     begin, end = run.span_s
     inside = (log.t_s - lag_s >= begin) & (log.t_s - lag_s <= end)
     first, last = int(np.argmax(inside)), len(inside) - int(np.argmax(inside[::-1]))
-    count = min(last - first, _MOST_SAMPLES)
+    part = richest(log.force_n[first:last] - log.force_n[first:last].mean(axis=0), _MOST_SAMPLES)
+    first, count = first + part.start, part.stop - part.start
     if count < 4:
         return lag_s
     measured = log.force_n[first : first + count][:, axes]
@@ -180,6 +193,13 @@ def _refined(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, r
     step = float(grid[1] - grid[0])
     found = minimize_scalar(loss, bounds=(start - step, start + step), method="bounded", options={"xatol": 1e-5 / rate})
     return lag_s + float(found.x)
+
+
+def _covers(log: ForceLog, lag_s: float, windows: Sequence[Gap]) -> bool:
+    """Whether a log has samples all through the windows at a delay."""
+    first, last = log.span_s
+    step = 1.5 / log.rate_hz
+    return all(first - lag_s <= begin + step and last - lag_s >= end - step for begin, end in windows)
 
 
 def _climbed(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, within_s: float | None) -> float:

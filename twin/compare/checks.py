@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from twin.compare.align import Delay, better_axes, find_delay
+from twin.compare.align import FAR_RIVALS, Delay, better_axes, find_delay
 from twin.compare.run_forces import RunForces
 from twin.compare.settings import CompareSettings
 from twin.errors import CompareError
@@ -15,12 +15,12 @@ from twin.measured.spindle import SpindleSpeed
 
 #: Forces that differ by this factor or its inverse are in another unit.
 _UNIT_FACTORS = (150.0, 7000.0)
+#: For each unit the one a thousand times larger, and the one a thousand times smaller.
+_OTHER_UNITS = {"N": ("kN", "mN"), "kN": ("MN", "N"), "mN": ("N", "uN")}
 _LEVEL_SAMPLES = 50_000
 _SPEED_WITHIN = 0.01
 _POOR_FIT = 0.75
 _FAR_BETTER = 0.15
-#: Delays that fit as well are worth a word when they lie this part of the log apart.
-_FAR_RIVALS = 0.25
 
 
 def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Iterator[str]:
@@ -33,7 +33,8 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
     measured, simulated = _level(log.force_n), _level(even)
     if not measured > 0.0:
         raise CompareError(f"{log.source}: all forces are equal: nothing was measured")
-    for ratio, how, unit in ((simulated / measured, "smaller", "kN"), (measured / simulated, "larger", "mN")):
+    larger, smaller = _OTHER_UNITS.get(log.unit, ("kN", "mN"))
+    for ratio, how, unit in ((simulated / measured, "smaller", larger), (measured / simulated, "larger", smaller)):
         if _UNIT_FACTORS[0] < ratio < _UNIT_FACTORS[1]:
             text = (
                 f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, "
@@ -140,8 +141,9 @@ def _turned(text: str) -> str:
 def check_delay(delay: Delay, log: ForceLog) -> Iterator[str]:
     """A delay that could as well be another one far from it: neighbours a tooth period away are no matter."""
     far = max((abs(r - delay.lag_s) for r in delay.rivals_s), default=0.0)
-    if far > _FAR_RIVALS * log.duration_s:
+    if far > FAR_RIVALS * log.duration_s:
         yield (
             f"{log.source}: {len(delay.rivals_s)} other delays fit as well, up to {far:.3f} s away: the cut is steady "
-            "there, so that only the spindle's phase is known; --lag-within SECONDS narrows the search"
+            "there, so that only the spindle's phase is known; that nearest to 0 is taken which covers the windows; "
+            "--lag-within SECONDS narrows the search"
         )

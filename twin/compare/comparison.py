@@ -167,7 +167,7 @@ def _in_band(log: ForceLog, settings: CompareSettings) -> ForceLog:
 def _lag(run: RunForces, log: ForceLog, settings: CompareSettings) -> tuple[float, Delay | None]:
     if settings.lag != "auto":
         return settings.lag, None
-    delay = find_delay(run, log, settings.lag_within_s)
+    delay = find_delay(run, log, settings.lag_within_s, settings.windows)
     return delay.lag_s, delay
 
 

@@ -79,3 +79,8 @@ def holds(area: Area, line: FloatArray) -> bool:
 def nearest_area(areas: Sequence[Area], point: FloatArray) -> int:
     """Number of the area nearest to a point."""
     return int(np.argmin(shapely.distance(np.array(areas, dtype=object), shapely.Point(point))))
+
+
+def line_distance_mm(one: FloatArray, other: FloatArray) -> float:
+    """Least distance of two polylines, shape (n >= 2, 2)."""
+    return float(shapely.distance(shapely.LineString(one), shapely.LineString(other)))

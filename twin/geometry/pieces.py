@@ -13,6 +13,8 @@ from twin.geometry.clip import DECIMALS
 from twin.geometry.shapes import Shape, Shapes, outline_rings
 
 _POLYGON = 3
+#: Middles of circles are found to this part of a piece's size.
+_MIDDLE = 0.01
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,12 +65,29 @@ class Pieces:
         kept = place % every[of] == 0
         return points[kept], of[kept].astype(np.int64)
 
+    def middles(self, least_share: float) -> tuple[FloatArray, NDArray[np.int64]]:
+        """Middles of the largest circles inside of pieces, and the piece of each.
+
+        Args:
+            least_share: pieces with a smaller area, as a part of their outline's length squared, are left out: long
+                thin ones have their middle nowhere in particular.
+        """
+        fat = np.flatnonzero(self.areas_mm2 > least_share * shapely.length(self.shapes) ** 2)
+        size = np.sqrt(self.areas_mm2[fat])
+        circles = shapely.maximum_inscribed_circle(self.shapes[fat], tolerance=_MIDDLE * size)
+        return np.asarray(shapely.get_coordinates(shapely.get_point(circles, 0))), fat.astype(np.int64)
+
     def near_pairs(self, distance_mm: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Pairs of pieces on the same or neighbouring planes that are no farther apart, seen along the normal."""
-        tree = shapely.STRtree(self.shapes)
-        one, other = tree.query(self.shapes, predicate="dwithin", distance=distance_mm)
-        near = np.abs(self.planes[one] - self.planes[other]) <= 1
-        return one[near], other[near]
+        """Pairs of pieces on neighbouring planes that are no farther apart, seen along the normal."""
+        firsts = np.searchsorted(self.planes, np.arange(self.planes[-1] + 2))
+        pairs = [np.empty((2, 0), dtype=np.int64)]
+        for low, middle, high in zip(np.concatenate(([0], firsts[:-2])), firsts[:-1], firsts[1:], strict=True):
+            if high > middle > low:
+                tree = shapely.STRtree(self.shapes[low:middle])
+                found = tree.query(self.shapes[middle:high], predicate="dwithin", distance=distance_mm)
+                pairs.append(found + np.array([[middle], [low]]))
+        one, other = np.concatenate(pairs, axis=1)
+        return one, other
 
 
 def prism_parts(shape: Shape) -> tuple[FloatArray, FloatArray]:

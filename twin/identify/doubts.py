@@ -23,24 +23,38 @@ _PLAUSIBLE_KTC = (20.0, 20000.0)
 _PLAUSIBLE_N = (0.01, 100_000.0)
 #: Waveforms repeat with each tooth but for this part of their size, or the teeth do not cut alike.
 _ALIKE = 0.15
+#: Forces that follow the model have an R2 above.
+LEAST_FIT = 0.9
 #: Samples in one tooth passing below which means may be off.
 _LEAST_SAMPLES = 2.0
 
 
 def doubts(
-    cuts: Cuts, estimate: Estimate, results: Sequence[CutResult], at_bounds: Sequence[str], *, runout: bool
+    cuts: Cuts,
+    estimate: Estimate,
+    results: Sequence[CutResult],
+    at_bounds: Sequence[str],
+    *,
+    runout: bool,
+    r_squared: float,
 ) -> Iterator[str]:
     """One line for each.
 
     Args:
         at_bounds: coefficients on a bound of the search.
         runout: whether it was found.
+        r_squared: of all that was fitted.
     """
     yield from _undetermined(cuts, estimate)
     yield from _uncertain(estimate)
     yield from _implausible(estimate, results)
     yield from _logs(cuts, results)
     yield from _runout(cuts, results, runout)
+    if r_squared < LEAST_FIT:
+        yield (
+            f"R2 = {r_squared:.3f}, expected above {LEAST_FIT:g}: forces do not follow the model; check map, force_on, "
+            "direction, depths, teeth and helix; a resonance of the dynamometer is left out by fit.lowpass_hz"
+        )
     if at_bounds:
         yield f"{', '.join(at_bounds)}: at a bound of the search; widen fit.lower and fit.upper, or find out why"
 

@@ -9,18 +9,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.arrays import FloatArray
+from twin.compare.align import find_delay
 from twin.errors import IdentifyError
+from twin.identify.axes_hint import other_axes
 from twin.identify.cuts_file import Cut, Cuts, Method
-from twin.identify.doubts import doubts
+from twin.identify.doubts import LEAST_FIT, doubts
 from twin.identify.estimate import Estimate, fixed_values
 from twin.identify.job_model import JobRun, replay_units
-from twin.identify.means import equations, fit_means, search_means
+from twin.identify.means import START, equations, fit_means, search_means
 from twin.identify.measure import Measured, given_mean, log_of, measure, straight_window
 from twin.identify.model import Model, pass_model
 from twin.identify.result import CutResult, Identified, Runout
 from twin.identify.steady import find_cut
 from twin.identify.straight import reach_mm
 from twin.identify.waveform import Waveforms, fit_waveforms, measured_harmonics
+from twin.measured import ForceLog
+from twin.measured.uniform import uniform
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,7 +85,7 @@ def identify_prepared(
     k = estimate.values
     results = tuple(_result(p, k) for p in prepared)
     r_squared = _r_squared(given.values, given.design @ k, given.axis)
-    return _told(cuts, method, estimate, r_squared, results, None, evaluations, at_bounds)
+    return _told(cuts, method, estimate, r_squared, prepared, results, None, evaluations, at_bounds)
 
 
 def _straight_cut(cuts: Cuts, cut: Cut) -> Prepared:
@@ -91,7 +95,7 @@ def _straight_cut(cuts: Cuts, cut: Cut) -> Prepared:
     held_out = cut.name in cuts.held_out
     if cut.log is None:
         return Prepared(cut, held_out, model, given_mean(cut, cut.spindle_rpm))
-    log = log_of(cut)
+    log = log_of(cut, cut.spindle_rpm)
     found = find_cut(log.t_s, log.force_n, 60.0 / cut.spindle_rpm)
     window = straight_window(cut, log, found, reach_mm(model.cut), cut.spindle_rpm, cut.feed_mm_min / 60.0)
     measured = measure(cut, log, found, window, cut.spindle_rpm, tool.teeth, cuts.fit)
@@ -104,32 +108,29 @@ def _job_cut(cuts: Cuts, cut: Cut) -> Prepared:
     held_out = cut.name in cuts.held_out
     if cut.log is None:
         return Prepared(cut, held_out, run.model(cut.run_window_s or run.cut_s), given_mean(cut, run.rpm))
-    log = log_of(cut)
+    log = log_of(cut, run.rpm)
     found = find_cut(log.t_s, log.force_n, 60.0 / run.rpm)
-    lag_s = cut.lag_s if cut.lag_s is not None else _lag(cut, run, found.cut_s, found.begins)
+    lag_s, why = _lag(cut, run, log)
     run_window = cut.run_window_s
     if run_window is None:
         inner = (run.cut_s[0] + 60.0 / run.rpm, run.cut_s[1] - 60.0 / run.rpm)
         run_window = (cut.window_s[0] - lag_s, cut.window_s[1] - lag_s) if cut.window_s else inner
     window = cut.window_s or (run_window[0] + lag_s, run_window[1] + lag_s)
-    measured = measure(cut, log, found, window, run.rpm, run.teeth, cuts.fit)
-    note = f"log lags the run by {lag_s:.4f} s, {'as given' if cut.lag_s is not None else 'by the first contact'}"
-    return Prepared(cut, held_out, run.model(run_window), _with_note(measured, note))
+    measured = measure(
+        cut, log, found, window, run.rpm, run.teeth, cuts.fit, run.seeming_speed(run_window, log.rate_hz)
+    )
+    note = f"log lags the run by {lag_s:.4f} s, {why}"
+    return Prepared(cut, held_out, run.model(run_window), replace(measured, notes=(*measured.notes, note)))
 
 
-def _lag(cut: Cut, run: JobRun, cut_s: tuple[float, float], begins: bool) -> float:
-    """Log's time less machine time, by the first contact; not needed where both windows are given."""
+def _lag(cut: Cut, run: JobRun, log: ForceLog) -> tuple[float, str]:
+    """Log's time less machine time, and how it is known; not looked for where both windows are given."""
+    if cut.lag_s is not None:
+        return cut.lag_s, "as given"
     if cut.window_s is not None and cut.run_window_s is not None:
-        return 0.5 * sum(cut.window_s) - 0.5 * sum(cut.run_window_s)
-    if not begins:
-        raise IdentifyError(
-            f"{cut.log}: the beginning of the cut is not in the log; give lag_s, or window_s and run_window_s"
-        )
-    return cut_s[0] - run.cut_s[0]
-
-
-def _with_note(measured: Measured, note: str) -> Measured:
-    return replace(measured, notes=(*measured.notes, note))
+        return 0.5 * sum(cut.window_s) - 0.5 * sum(cut.run_window_s), "by the windows"
+    delay = find_delay(run.forces(np.array(START)), uniform(log))
+    return delay.lag_s, f"found by correlation with the run, {delay.score:.3f}"
 
 
 def _by_waveforms(cuts: Cuts, prepared: list[Prepared], fitted: list[Prepared]) -> Identified:
@@ -165,7 +166,7 @@ def _by_waveforms(cuts: Cuts, prepared: list[Prepared], fitted: list[Prepared]) 
         [np.repeat(np.flatnonzero(m.axes), 2 * len(measured_harmonics(m)) - 1) for m in together.measured]
     )
     r_squared = _r_squared(values, together.design(found.phases, runout_mm) @ k, axis.astype(np.float64))
-    return _told(cuts, "waveform", found.estimate, r_squared, results, found.runout, found.evaluations, ())
+    return _told(cuts, "waveform", found.estimate, r_squared, prepared, results, found.runout, found.evaluations, ())
 
 
 def _sector(cuts: Cuts) -> float:
@@ -214,11 +215,17 @@ def _told(
     method: Method,
     estimate: Estimate,
     r_squared: tuple[float, float, float, float],
+    prepared: list[Prepared],
     results: tuple[CutResult, ...],
     runout: Runout | None,
     evaluations: int,
     at_bounds: tuple[str, ...],
 ) -> Identified:
+    warnings = [*doubts(cuts, estimate, results, at_bounds, runout=runout is not None, r_squared=r_squared[0])]
+    if r_squared[0] < LEAST_FIT or estimate.values[0] < 0.0:
+        fitted = [p for p in prepared if not p.held_out]
+        axes = other_axes([p.model for p in fitted], [p.measured for p in fitted])
+        warnings += [f"mean forces would follow the model with {axes} of what the map gives"] if axes else []
     return Identified(
         file=cuts.path,
         method=method,
@@ -229,5 +236,5 @@ def _told(
         evaluations=evaluations,
         at_bounds=at_bounds,
         source=cuts.fit.source,
-        warnings=tuple(doubts(cuts, estimate, results, at_bounds, runout=runout is not None)),
+        warnings=tuple(warnings),
     )

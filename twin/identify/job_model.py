@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from twin.arrays import FloatArray
+from twin.compare.run_forces import RunForces
 from twin.errors import IdentifyError
-from twin.identify.harmonics import ComplexArray
+from twin.identify.harmonics import ComplexArray, find_speed
+from twin.identify.means import START
 from twin.identify.straight import NAMES, unit_coefficients
 from twin.job import Cutting, Job, load_job
-from twin.record import Step
+from twin.record import RunHeader, Step
 from twin.replay import Replay
 
 Span = tuple[float, float]
@@ -29,6 +31,7 @@ class JobRun:
         file: the job file.
         t_s, angle_rad: shape (n,), machine time and spindle angle of the samples with forces.
         force_n: shape (n, 3, 6), force on the tool.
+        header: of the run.
         row_rad: spindle angle between samples.
         cut_s: machine time of the first and the last contact in feed.
         rpm, feed_per_tooth_mm, teeth, radius_mm: of the steps that cut.
@@ -38,12 +41,33 @@ class JobRun:
     t_s: FloatArray
     angle_rad: FloatArray
     force_n: FloatArray
+    header: RunHeader
     row_rad: float
     cut_s: Span
     rpm: float
     feed_per_tooth_mm: float
     teeth: int
     radius_mm: float
+
+    def forces(self, k: FloatArray) -> RunForces:
+        """The run with these coefficients, shape (6,)."""
+        return RunForces(
+            path=self.file,
+            header=self.header,
+            digest="",
+            t_s=self.t_s,
+            force_n=self.force_n @ k,
+            spindle_angle_rad=self.angle_rad,
+            steps=np.array([[*self.cut_s, self.rpm, 1.0, 1.0]]),
+            teeth={1: self.teeth},
+        )
+
+    def seeming_speed(self, window_s: Span, rate_hz: float) -> float:
+        """The speed that is found in the run's own force, in parts of the true one."""
+        t_s = np.arange(window_s[0], window_s[1], 1.0 / rate_hz)
+        if window_s[1] - window_s[0] < 120.0 / self.rpm:
+            return 1.0
+        return find_speed(t_s, self.forces(np.array(START)).at(t_s), self.rpm, self.teeth) / self.rpm
 
     def model(self, window_s: Span) -> JobModel:
         """The mean revolution in a window of machine time.
@@ -108,7 +132,7 @@ def replay_units(path: Path) -> JobRun:
         IdentifyError: a job that cuts nothing, with several tools, speeds, or with an M4 spindle.
     """
     job = load_job(path)
-    steps = _steps(_with_unit(job, 0))
+    header, steps = _replayed(_with_unit(job, 0))
     cutting = [s for s in steps if s.engagement.cutting and not s.rapid]
     tools, speeds = {s.tool for s in cutting}, {s.spindle_rpm for s in cutting}
     if not cutting:
@@ -118,12 +142,13 @@ def replay_units(path: Path) -> JobRun:
         raise IdentifyError(f"{path}: this job cuts with {told}; expected one tool at one speed, M3")
     tool, rpm = job.tool(cutting[0].tool), cutting[0].spindle_rpm
     samples = [s.samples for s in steps]
-    forces = [_forces(steps), *(_forces(_steps(_with_unit(job, k))) for k in range(1, len(NAMES)))]
+    forces = [_forces(steps), *(_forces(_replayed(_with_unit(job, k))[1]) for k in range(1, len(NAMES)))]
     return JobRun(
         file=path,
         t_s=np.concatenate([s.t_s for s in samples]),
         angle_rad=np.concatenate([s.spindle_angle_rad for s in samples]),
         force_n=np.stack(forces, axis=2),
+        header=header,
         row_rad=math.radians(job.simulation.angle_step_deg),
         cut_s=(cutting[0].t_s, cutting[-1].t_s + cutting[-1].duration_s),
         rpm=rpm,
@@ -140,9 +165,12 @@ def _with_unit(job: Job, index: int) -> Job:
     return job.model_copy(update={"cutting": cutting, "tools": tools})
 
 
-def _steps(job: Job) -> list[Step]:
+def _replayed(job: Job) -> tuple[RunHeader, list[Step]]:
     with Replay(job, preview=False) as run:
-        return [record for record in run if isinstance(record, Step)]
+        records = [record for record in run if isinstance(record, RunHeader | Step)]
+    header = records[0]
+    assert isinstance(header, RunHeader)
+    return header, [record for record in records if isinstance(record, Step)]
 
 
 def _forces(steps: list[Step]) -> FloatArray:

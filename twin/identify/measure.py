@@ -30,6 +30,10 @@ _MOST_HARMONICS = 60
 _BELOW_NYQUIST = 0.4
 #: How notes of a speed that may be wrong begin.
 SPEED_DOUBT = "spindle speed in doubt"
+#: Fewer revolutions do not tell a speed within 1 %.
+_LEAST_SPEED_TURNS = 8
+#: Times in a file are rounded by less than this part of their interval.
+_ROUNDED = 0.25
 #: Parts of the window that the mean's standard error is found from.
 _BATCHES = 20
 
@@ -89,15 +93,24 @@ def given_mean(cut: Cut, rpm: float) -> Measured:
     return Measured(mean_n=sign * values, error_n=errors, rpm=rpm, notes=("mean force as given",))
 
 
-def log_of(cut: Cut) -> ForceLog:
+def log_of(cut: Cut, rpm: float) -> ForceLog:
     """The cut's log as forces on the tool.
+
+    Args:
+        rpm: makes time of a column of the spindle's angle, where there is no time.
 
     Raises:
         MeasuredError: see `twin.measured.read_log` and `twin.measured.force_log`.
     """
     assert cut.log is not None
     raw = read_log(
-        cut.log, rate_hz=cut.rate_hz, columns=cut.columns, delimiter=cut.delimiter, decimal=cut.decimal, group=cut.group
+        cut.log,
+        rate_hz=cut.rate_hz,
+        columns=cut.columns,
+        delimiter=cut.delimiter,
+        decimal=cut.decimal,
+        group=cut.group,
+        rpm=rpm,
     )
     axis_map = AxisMap.parse(cut.map) if cut.map is not None else None
     return force_log(raw, axis_map, force_on=cut.force_on, unit=cut.unit)
@@ -120,14 +133,18 @@ def straight_window(cut: Cut, log: ForceLog, found: Found, reach_mm: float, rpm:
     return steady
 
 
-def measure(cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, teeth: int, fit: Fit) -> Measured:
+def measure(
+    cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, teeth: int, fit: Fit, seems: float = 1.0
+) -> Measured:
     """Mean and waveform in a window of a log.
 
     Args:
         rpm: spindle speed as given.
+        seems: speed that is found in the simulated force of this window, in parts of the true one: where the engagement
+            changes the force runs ahead of the spindle or behind it.
 
     Raises:
-        IdentifyError: fewer than two revolutions in the window.
+        IdentifyError: less than a revolution in the window.
         MeasuredError: a window outside the log.
     """
     inside, notes = _inside(log, window, rpm), [*log.notes]
@@ -136,14 +153,17 @@ def measure(cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, tee
     f = log.force_n[inside] - zero.at(t)
     samples = log.rate_hz * 60.0 / rpm
     if samples > 2.5 * teeth:
-        rpm, told = _speed(replace(log, t_s=t, force_n=f, spindle_angle_rad=None, trigger_s=None), rpm, teeth, fit)
+        rpm, told = _speed(
+            replace(log, t_s=t, force_n=f, spindle_angle_rad=None, trigger_s=None), rpm, teeth, fit, seems
+        )
         notes += told
     mean, error, used = _mean(t, f, 60.0 / rpm)
     measured = np.array([axis in log.axes for axis in AXES])
     count = harmonic_count(fit, teeth, rpm, samples)
     harmonics = noise = None
-    if count >= 1 and inside.sum() > 4 * count:
-        harmonics, noise = of_samples(t, f, rpm * 2.0 * math.pi / 60.0, count)
+    if count >= 1 and inside.sum() >= 3 * count:
+        turns = (t >= used[0]) & (t <= used[1])
+        harmonics, noise = of_samples(t[turns], f[turns], rpm * 2.0 * math.pi / 60.0, count)
     notes += [zero.note, f"steady cut from {used[0]:.3f} to {used[1]:.3f} s, {'as given' if cut.window_s else 'found'}"]
     return Measured(
         mean_n=np.where(measured, mean, math.nan),
@@ -176,35 +196,44 @@ def _inside(log: ForceLog, window: Span, rpm: float) -> NDArray[np.bool_]:
             f"{log.source}: window {window[0]:g} to {window[1]:g} s is not in the log, "
             f"which has {first:.4f} to {last:.4f} s"
         )
-    if window[1] - window[0] < 120.0 / rpm:
+    inside = np.asarray((log.t_s >= window[0]) & (log.t_s <= window[1]))
+    if inside.sum() < 3 or window[1] - window[0] + (1.0 + _ROUNDED) / log.rate_hz < 60.0 / rpm:
         raise IdentifyError(
-            f"{log.source}: window {window[0]:g} to {window[1]:g} s has fewer than two revolutions at {rpm:g} rpm"
+            f"{log.source}: window {window[0]:g} to {window[1]:g} s has {int(inside.sum())} samples, expected a whole "
+            f"revolution: {60.0 / rpm:.4f} s at {rpm:g} rpm"
         )
-    return np.asarray((log.t_s >= window[0]) & (log.t_s <= window[1]))
+    return inside
 
 
-def _speed(log: ForceLog, rpm: float, teeth: int, fit: Fit) -> tuple[float, list[str]]:
+def _speed(log: ForceLog, rpm: float, teeth: int, fit: Fit, seems: float) -> tuple[float, list[str]]:
     """The speed of the waveform in a window; the given one where that is asked, or where none near it stands out."""
+    if log.duration_s < _LEAST_SPEED_TURNS * 60.0 / rpm:
+        return rpm, [f"spindle speed {rpm:g} rpm as given: too few revolutions to find it"]
     seen = spindle_speed(log, teeth, rpm)
     if seen is not None and abs(seen.rpm / rpm - 1.0) > SPEED_RANGE:
         return rpm, [f"{SPEED_DOUBT}: the force repeats as at {seen.rpm:.0f} rpm, {rpm:g} rpm is given and taken"]
     if fit.speed == "given":
         return rpm, []
-    found = find_speed(log.t_s, log.force_n, rpm, teeth)
+    found = find_speed(log.t_s, log.force_n, rpm, teeth) / seems
     if abs(found / rpm - 1.0) > 0.98 * SPEED_RANGE:
         return rpm, [f"{SPEED_DOUBT}: none found within {100 * SPEED_RANGE:g} % of {rpm:g} rpm, which is taken"]
     return found, [f"spindle speed {found:.2f} rpm found, {rpm:g} given"]
 
 
 def _mean(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> tuple[FloatArray, FloatArray, Span]:
-    """Mean over whole revolutions, its standard error from the means of parts, and the window it is taken in."""
-    turns = math.floor((t_s[-1] - t_s[0]) / revolution_s * (1.0 + 1e-9))
-    first = 0.5 * (t_s[0] + t_s[-1] - turns * revolution_s)
+    """Mean over whole revolutions, its standard error from the means of parts, and the window it is taken in.
+
+    A sample stands for the interval about it, so that a revolution of samples is a revolution.
+    """
+    interval = (t_s[-1] - t_s[0]) / (len(t_s) - 1)
+    begin, end = t_s[0] - 0.5 * interval, t_s[-1] + 0.5 * interval
+    turns = max(1, math.floor((end - begin + _ROUNDED * interval) / revolution_s))
+    first = 0.5 * (begin + end - turns * revolution_s)
     batches = min(_BATCHES, turns)
-    ends = first + revolution_s * np.round(np.linspace(0, turns, batches + 1))
-    steps = np.diff(t_s)[:, None] * 0.5 * (force_n[1:] + force_n[:-1])
-    area = np.concatenate((np.zeros((1, force_n.shape[1])), np.cumsum(steps, axis=0)))
-    at = np.column_stack([np.interp(ends, t_s, area[:, axis]) for axis in range(force_n.shape[1])])
+    ends = np.clip(first + revolution_s * np.round(np.linspace(0, turns, batches + 1)), begin, end)
+    borders = np.concatenate(([begin], 0.5 * (t_s[1:] + t_s[:-1]), [end]))
+    area = np.concatenate((np.zeros((1, force_n.shape[1])), np.cumsum(np.diff(borders)[:, None] * force_n, axis=0)))
+    at = np.column_stack([np.interp(ends, borders, area[:, axis]) for axis in range(force_n.shape[1])])
     means = np.diff(at, axis=0) / np.diff(ends)[:, None]
     error = np.std(means, axis=0, ddof=1) / math.sqrt(batches) if batches > 2 else np.full(force_n.shape[1], math.nan)
     return (at[-1] - at[0]) / (ends[-1] - ends[0]), error, (float(ends[0]), float(ends[-1]))

@@ -78,7 +78,8 @@ def steady_part(found: Found, reach_mm: float, feed_mm_s: float, revolution_s: f
     trim = max(_ENTRY * reach_mm / feed_mm_s, 2.0 * revolution_s)
     first = found.cut_s[0] + (trim if found.begins else 0.0)
     last = found.cut_s[1] - (trim if found.ends else 0.0)
-    return (first, last) if last - first >= 3.0 * revolution_s else None
+    least = 3.0 * revolution_s if found.begins or found.ends else 0.0
+    return (first, last) if last - first >= least else None
 
 
 def _activity(t_s: FloatArray, force_n: FloatArray, revolution_s: float) -> tuple[FloatArray, FloatArray]:

@@ -122,7 +122,7 @@ class Cutting(Table):
     standard_errors: Annotated[tuple[float, float, float, float, float, float], Strict(False)] | None = Field(
         default=None, description="standard errors of Ktc, Kte, Krc, Kre, Kac, Kae; kept with the run, not used"
     )
-    correlation: Annotated[tuple[tuple[float, ...], ...], Strict(False)] | None = Field(
+    correlation: Annotated[tuple[Annotated[tuple[float, ...], Strict(False)], ...], Strict(False)] | None = Field(
         default=None, description="correlation of these errors, six rows of six; kept with the run, not used"
     )
 

@@ -78,6 +78,7 @@ def force_log(
         source=raw.source,
         axes=tuple(a for a in AXES if a in terms),
         force_on=force_on,
+        unit=unit or raw.columns[next(iter(used))].unit,
         spindle_angle_rad=angle,
         trigger_s=pulses,
         gaps=gaps_of(t_s, raw.rate_hz),

@@ -40,7 +40,7 @@ def read_hdf5(path: Path, group: str | None = None, format_name: str = "HDF5") -
             for key, value in file.attrs.items():
                 _scalar(key, value, scalars)
             file.visititems(visit)
-    except OSError as error:
+    except Exception as error:  # h5py raises many kinds on damaged files
         raise MeasuredError(f"{path}: no HDF5 file that can be read: {error}") from error
     return columns_table(path, format_name, arrays, scalars, group)
 

@@ -93,6 +93,7 @@ class ForceLog:
         channels: what each axis comes from, e.g. ``-Fy [N]``, order x, y, z; ``""`` for an axis that is not measured.
         axes: the axes that were measured.
         force_on: the body that the log's own numbers act on; ``force_n`` is always the force on the tool.
+        unit: that the forces were taken to be in, ``""`` where nobody said one.
         spindle_angle_rad: shape (n,), continuous, or None.
         trigger_s: moments of a once-per-revolution pulse, or None.
         gaps: where samples are missing.
@@ -107,6 +108,7 @@ class ForceLog:
     source: Path
     axes: tuple[str, ...] = AXES
     force_on: ForceOn = "tool"
+    unit: str = ""
     spindle_angle_rad: FloatArray | None = None
     trigger_s: FloatArray | None = None
     gaps: tuple[Gap, ...] = ()

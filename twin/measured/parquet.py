@@ -22,6 +22,7 @@ def read_parquet(path: Path) -> Table:
 
     try:
         read = parquet.read_table(path)
+        read.validate(full=True)
     except (OSError, pa.ArrowException) as error:
         raise MeasuredError(f"{path}: no Parquet file that can be read: {error}") from error
     columns = []

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from twin.arrays import FloatArray
 from twin.measured.log import ForceLog
-from twin.measured.uniform import pieces, uniform
+from twin.measured.uniform import active, pieces, richest, uniform
 
 #: Multiples of the tooth-passing frequency that are looked at.
 _MOST_LINES = 8
@@ -19,7 +20,6 @@ _SEARCHED = (0.65, 1.5)
 _LEAST_SHARE = 0.25
 #: Longest stretch that is looked at, samples.
 _MOST_SAMPLES = 1 << 20
-_FINE_SAMPLES = 1 << 17
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,15 +46,24 @@ def spindle_speed(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpee
     """
     if log.trigger_s is not None and len(log.trigger_s) > 2:
         return SpindleSpeed(rpm=60.0 / float(np.median(np.diff(log.trigger_s))), share=1.0, way="trigger")
-    if log.spindle_angle_rad is not None and abs(turned := float(np.ptp(log.spindle_angle_rad))) > 2.0 * np.pi:
-        return SpindleSpeed(rpm=60.0 * turned / (2.0 * np.pi) / log.duration_s, share=1.0, way="angle")
+    if log.spindle_angle_rad is not None and float(np.ptp(log.spindle_angle_rad)) > 2.0 * np.pi:
+        return SpindleSpeed(rpm=_speed_of(log.t_s, log.spindle_angle_rad), share=1.0, way="angle")
     return _from_spectrum(uniform(log), teeth, abs(expected_rpm))
+
+
+def _speed_of(t_s: FloatArray, angle_rad: FloatArray) -> float:
+    """Speed, rpm, over most of the samples: a spindle may stand at the ends of a log."""
+    ahead = max(1, len(t_s) // 200)
+    speeds = np.abs(angle_rad[ahead:] - angle_rad[:-ahead]) / (t_s[ahead:] - t_s[:-ahead])
+    return 60.0 * float(np.median(speeds)) / (2.0 * np.pi)
 
 
 def _from_spectrum(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpeed | None:
     """Search for the comb on a grid finer than the spectrum's resolution, then refine."""
     part = max(pieces(log), key=lambda s: s.stop - s.start)
-    force = log.force_n[part][:_MOST_SAMPLES]
+    force = log.force_n[part] - log.force_n[part].mean(axis=0)
+    force = force[active(force)]
+    force = force[richest(force, _MOST_SAMPLES)]
     n = len(force)
     passing = teeth * expected_rpm / 60.0
     low, high = _SEARCHED[0] * passing, _SEARCHED[1] * passing
@@ -68,29 +77,25 @@ def _from_spectrum(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpe
     found = np.arange(low, high, 0.5 * step)
     scores = _comb(power, step, found, log.rate_hz)
     best = float(found[np.argmax(scores)])
-    hz = _refined(moving[:_FINE_SAMPLES], log.rate_hz, best, step)
+    hz = _refined(power, step, best, log.rate_hz)
     share = _share(power, step, hz, log.rate_hz, n)
     if share < _LEAST_SHARE:
         return None
     return SpindleSpeed(rpm=60.0 * hz / teeth, share=share, way="spectrum")
 
 
-def _refined(moving: FloatArray, rate_hz: float, hz: float, reach_hz: float) -> float:
-    """The frequency next to one on the grid at which the comb's power, without any grid, is highest."""
-    orders = np.arange(1, _lines(hz, rate_hz) + 1)
-    t_s = np.arange(len(moving)) / rate_hz
+def _refined(power: FloatArray, step: float, hz: float, rate_hz: float) -> float:
+    """The frequency next to one on the grid at which the comb's power, by splines through the grid, is highest."""
+    curves = []
+    for k in range(1, _lines(hz, rate_hz) + 1):
+        middle, half = round(k * hz / step), 2 * k + 6
+        part = np.arange(max(middle - half, 0), min(middle + half + 1, len(power)))
+        curves.append((k, CubicSpline(part * step, power[part])))
 
     def loss(at_hz: float) -> float:
-        base = np.exp(-2.0j * np.pi * at_hz * t_s)
-        turn, total = np.ones_like(base), 0.0
-        for _ in orders:
-            turn = turn * base
-            total += float(np.sum(np.abs(turn @ moving) ** 2))
-        return -total
+        return -sum(float(curve(k * at_hz)) for k, curve in curves)
 
-    found = minimize_scalar(
-        loss, bounds=(hz - reach_hz, hz + reach_hz), method="bounded", options={"xatol": 1e-4 * reach_hz}
-    )
+    found = minimize_scalar(loss, bounds=(hz - step, hz + step), method="bounded", options={"xatol": 1e-4 * step})
     return float(found.x)
 
 

@@ -8,7 +8,6 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import islice
 
 #: Delimiters that are tried, None for any white space; commas with a blank behind them may stand beside decimal commas.
 _DELIMITERS = ("\t", ";", "|", ",", None)
@@ -113,32 +112,50 @@ def find_layout(lines: Sequence[str], delimiter: str | None = None, decimal: str
     """
     delimiters = _DELIMITERS if delimiter is None else (delimiter or None,)
     decimals = (".", ",") if decimal is None else (decimal,)
-    tries = [_try(lines, d, mark) for mark in decimals for d in delimiters if mark != d]
-    found = [(score, layout) for score, layout in filter(None, tries)]
-    return max(found, key=lambda pair: pair[0])[1] if found else None
+    sample = _sample(lines)
+    tries = [_try(sample, d, mark) for mark in decimals for d in delimiters if mark != d]
+    found = [each for each in tries if each is not None]
+    if not found:
+        return None
+    _, width, used, mark = max(found, key=lambda each: each[:2])
+    return Layout(used, mark, width, _first_row(lines, used, mark, width))
 
 
-def _try(lines: Sequence[str], delimiter: str | None, decimal: str) -> tuple[tuple[int, int], Layout] | None:
-    """How many lines are rows of numbers under a layout, and the layout."""
+def _try(lines: Sequence[str], delimiter: str | None, decimal: str) -> tuple[int, int, str | None, str] | None:
+    """How many lines are rows of numbers under a layout, and how many fields they have."""
     widths: Counter[int] = Counter()
-    firsts: dict[int, int] = {}
-    for index, line in islice(_sample(lines), _TRIED_LINES):
+    for line in lines:
         fields = fields_of(line, delimiter)
         if fields and is_row(fields, decimal):
             widths[len(fields)] += 1
-            firsts.setdefault(len(fields), index)
     if not widths:
         return None
     width, count = max(widths.items(), key=lambda item: (item[1], item[0]))
-    return (count, width), Layout(delimiter, decimal, width, firsts[width])
+    return count, width, delimiter, decimal
 
 
-def _sample(lines: Sequence[str]) -> list[tuple[int, str]]:
+def _first_row(lines: Sequence[str], delimiter: str | None, decimal: str, width: int) -> int:
+    """The first row of numbers that has another one behind it: a row of settings may stand above the names."""
+    first, latest, before = -1, -1, False
+    for index, line in enumerate(lines):
+        fields = fields_of(line, delimiter)
+        if not fields:
+            continue
+        row = len(fields) == width and is_row(fields, decimal)
+        if row and before:
+            return latest
+        if row:
+            latest = index
+            first = index if first < 0 else first
+        before = row
+    return first
+
+
+def _sample(lines: Sequence[str]) -> list[str]:
     """The first lines, where the header is, and some from the middle."""
     half = _TRIED_LINES // 2
-    head = list(enumerate(lines[:half]))
     middle = max(half, len(lines) // 2)
-    return head + list(enumerate(lines[middle : middle + half], middle))
+    return [*lines[:half], *lines[middle : middle + half]]
 
 
 def is_row(fields: Sequence[str], decimal: str) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.errors import MeasuredError
-from twin.measured.log import Channel, RawLog, gaps_of, vector
+from twin.measured.log import GAP_INTERVALS, UNEVEN, UNEVEN_GAP, Channel, RawLog, gaps_of, vector
 from twin.measured.table import Table
 from twin.measured.units import ANGLE_NAME, TIME_NAME, find_unit, split_unit
 
@@ -200,7 +200,8 @@ def _steady(
 def _rate_of(steps: FloatArray) -> float:
     """Samples a second, gaps left out; a rate within rounding of few digits is given with these."""
     middle = float(np.median(steps))
-    near = steps[steps < 1.75 * middle]
+    uneven = float(np.median(np.abs(steps / middle - 1.0))) > UNEVEN
+    near = steps[steps < (UNEVEN_GAP * float(np.percentile(steps, 95.0)) if uneven else GAP_INTERVALS * middle)]
     rate = 1.0 / float(near.mean())
     rounded = float(f"{rate:.6g}")
     return rounded if abs(rate / rounded - 1.0) < 1e-6 else rate

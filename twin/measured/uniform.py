@@ -99,6 +99,22 @@ def outside_gaps(log: ForceLog, t_s: FloatArray) -> np.ndarray[tuple[int], np.dt
     return good
 
 
+def richest(force_n: FloatArray, count: int) -> slice:
+    """The stretch of so many samples that holds most of the power; all of them where there are no more."""
+    if len(force_n) <= count:
+        return slice(0, len(force_n))
+    power = np.concatenate([[0.0], np.cumsum(np.sum(force_n**2, axis=1))])
+    start = int(np.argmax(power[count:] - power[:-count]))
+    return slice(start, start + count)
+
+
+def active(force_n: FloatArray) -> slice:
+    """The stretch between the first and the last hundredth of the power: without the air around a cut."""
+    power = np.cumsum(np.sum(force_n**2, axis=1))
+    first, last = np.searchsorted(power, (0.01 * power[-1], 0.99 * power[-1]))
+    return slice(int(first), int(last) + 1)
+
+
 def _at(log: ForceLog, t_s: FloatArray) -> ForceLog:
     """The log at other times, linear between its samples."""
     force = np.column_stack([np.interp(t_s, log.t_s, log.force_n[:, axis]) for axis in range(3)])

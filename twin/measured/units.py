@@ -17,6 +17,7 @@ _UNITS: dict[str, tuple[Quantity, float]] = {
     **dict.fromkeys(("min", "minutes"), ("time", 60.0)),
     **dict.fromkeys(("n", "newton", "newtons"), ("force", 1.0)),
     "kn": ("force", 1e3),
+    "un": ("force", 1e-6),
     "dan": ("force", 10.0),
     **dict.fromkeys(("lbf", "lbs", "lb"), ("force", 4.4482216152605)),
     **dict.fromkeys(("kgf", "kp"), ("force", 9.80665)),
@@ -67,8 +68,8 @@ def split_unit(header: str) -> tuple[str, str]:
     """A header as name and unit: ``("Fx", "N")`` from ``Fx [N]``, ``Fx_N``, ``Fx (N)``, ``Fx / N``, ``Fx N``.
 
     Returns:
-        the unit is ``""`` when the header holds none. Brackets with signs in them (``mV/V``) count as a unit, so that an
-        unknown one can be refused by name; with words in them (``filtered``) they belong to the name.
+        the unit is ``""`` when the header holds none. Brackets with signs in them (``mV/V``) count as a unit, so
+        that an unknown one can be refused by name; with words in them (``filtered``) they belong to the name.
     """
     text = header.strip().strip("\"'").strip()
     if (found := _BRACKETS.match(text)) and found["base"]:

@@ -7,7 +7,7 @@ path = plan(settings, part)
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,7 @@ from twin.cam.element import StructuringElement
 from twin.cam.linking import LinkOptions, Pass, Way, link
 from twin.cam.offset import inflated_planes
 from twin.cam.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
-from twin.cam.sections import SlicedPart, slice_part
+from twin.cam.sections import Sections, SlicedPart, slice_part
 from twin.cam.surface import surface_of
 from twin.cam.surface_way import SurfaceWay
 from twin.cam.tip_lines import Places, Profiles, tip_lines
@@ -28,6 +28,7 @@ from twin.cam.toolpath import ToolPath
 from twin.errors import ToolPathError
 from twin.geometry.outline import box_area, grown
 from twin.geometry.region import Region
+from twin.geometry.slicing import mesh_sections
 from twin.plan.settings import PathSettings
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
@@ -40,8 +41,10 @@ _CHORD_PITCHES = 0.005
 _CHORD_MM = 0.0005
 #: Planes that are inflated between two reports.
 _PLANES_TOGETHER = 32
-#: What a contour's default overhang lacks to the tool's radius, so that flush sides of the stock are left alone.
+#: What a contour's overhang lacks to the tool's radius, and a few chords: flush sides of the stock are left alone.
 _SHORT = 1e-3
+#: Levels are asked this much higher, for at the very height of a flat face the tool may stand on it.
+_LIFT_MM = 1e-6
 #: Tips higher than this above the stock are in air, and rows are broken there.
 _AIR_MM = 0.01
 #: Rapids are this much above the stock, unless told otherwise.
@@ -87,8 +90,9 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, report: Repor
     sliced = part if isinstance(part, SlicedPart) else slice_part(part, settings.pitch_mm)
     box = np.array([sliced.slices.low_mm, sliced.slices.high_mm])
     stock = np.reshape(settings.stock_mm, (2, 3)) if settings.stock_mm else box
-    region = np.reshape(settings.region_mm, (2, 2)) if settings.region_mm else box[:, :2]
-    default = 0.0 if settings.strategy == "scan" else tool.max_radius_mm - _SHORT
+    scan = settings.strategy == "scan"
+    region = np.reshape(settings.region_mm, (2, 2)) if settings.region_mm else (box if scan else stock)[:, :2]
+    default = 0.0 if scan else tool.max_radius_mm - _SHORT - 4.0 * _CHORD_PITCHES * settings.pitch_mm
     overhang = default if settings.overhang_mm is None else settings.overhang_mm
     top = float(stock[1, 2])
     safe = top + max(SAFE_ABOVE_MM, settings.clearance_mm) if settings.safe_z_mm is None else settings.safe_z_mm
@@ -164,6 +168,8 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
         floor_mm=ground.floor_mm,
         top_mm=float(ground.stock_mm[1, 2]),
     )
+    if settings.remaining_mm is not None and settings.layers == 1:
+        passes = [replace(p, top_mm=way.clear_z_mm(p.points_mm[0], p.points_mm[0])) for p in passes]
     return tuple(passes), way
 
 
@@ -183,7 +189,8 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
     top = float(ground.stock_mm[1, 2])
     heights = level_heights(ground.floor_mm + settings.allowance_mm, top, settings.axial_depth_mm)
     element = StructuringElement.tool(ground.tool).with_allowance(settings.allowance_mm)
-    regions = _inflated(settings, ground, element, 2, heights[::-1], report)[::-1]
+    at = heights[::-1] + _LIFT_MM
+    regions = _inflated(settings, _sections_with(ground.part, at), element, at, report)[::-1]
     levels = levels_of(heights, regions)
     chord = _CHORD_PITCHES * settings.pitch_mm
     window = grown(box_area(*ground.region_mm), ground.overhang_mm, chord)
@@ -200,11 +207,18 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
     return contour_passes(levels, options), LevelWay(levels, window, top)
 
 
+def _sections_with(part: SlicedPart, at: FloatArray) -> Sections:
+    """The part's level sections, and those at the levels themselves: a flat bottom meets nothing lower."""
+    mesh = part.mesh
+    regions = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (2, 0, 1), at)
+    return part.sections(2).joined(Sections(axis=2, positions_mm=at, regions=regions))
+
+
 def _inflated(
-    settings: PathSettings, ground: Ground, element: StructuringElement, axis: int, at: FloatArray, report: Report
+    settings: PathSettings, sections: Sections, element: StructuringElement, at: FloatArray, report: Report
 ) -> Sequence[Region]:
     """Sections of the inflated part on planes, some at a time."""
-    sections, chord = ground.part.sections(axis), _CHORD_PITCHES * settings.pitch_mm
+    chord = _CHORD_PITCHES * settings.pitch_mm
     made: list[Region] = []
     for first in range(0, len(at), _PLANES_TOGETHER):
         report("inflating", first / len(at))

@@ -38,7 +38,7 @@ class PathSettings(BaseModel):
     zigzag: bool = Field(default=True, description="scan: rows to and fro, else all one way")
     climb: bool = Field(default=True, description="climb milling, else conventional")
     region_mm: Corners | None = Field(
-        default=None, description="[x0, y0, x1, y1]: where the tip may be; the part's box if not given"
+        default=None, description="[x0, y0, x1, y1]: where the tip may be; scan: the part's box, contour: the stock's"
     )
     overhang_mm: float | None = Field(
         default=None, ge=0.0, description="how far the tip may go beyond it; scan: 0, contour: the tool's radius"

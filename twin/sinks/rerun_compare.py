@@ -16,7 +16,9 @@ from twin.sinks.rerun_file import RecordingFile
 _APPLICATION_ID = "twin-comparison"
 _PORT = 9876
 _MEASURED: layout.Rgb = (206, 212, 220)
-_ERROR: layout.Rgb = (214, 120, 226)
+#: Half of what the close views show around the cursor.
+_CLOSE_S = 0.02
+_CLOSE_NAME = "Around the cursor, ±20 ms"
 
 
 def show_comparison(forces: ComparedForces, *, rrd: Path | None = None, spawn: bool = False) -> None:
@@ -37,10 +39,16 @@ def show_comparison(forces: ComparedForces, *, rrd: Path | None = None, spawn: b
         file.connect(recording, *viewers)
     else:
         recording.set_sinks(*viewers)
-    recording.set_log_tick_enabled(False)
-    recording.set_log_time_enabled(False)
-    recording.send_blueprint(_blueprint())
-    _send(recording, forces)
+    try:
+        recording.set_log_tick_enabled(False)
+        recording.set_log_time_enabled(False)
+        recording.send_blueprint(_blueprint())
+        _send(recording, forces)
+    except BaseException:
+        recording.disconnect()
+        if file is not None:
+            file.discard()
+        raise
     recording.disconnect()
     if file is not None:
         file.close()
@@ -54,30 +62,47 @@ def _send(recording: rr.RecordingStream, forces: ComparedForces) -> None:
         curves = (
             ("measured", measured, _MEASURED, f"F{axis} measured [N]"),
             ("simulated", simulated, series.color, f"F{axis} simulated [N]"),
-            ("error", simulated - measured, _ERROR, f"F{axis} error [N]"),
+            ("error", simulated - measured, series.color, f"F{axis} error [N]"),
         )
         for name, values, color, text in curves:
-            entity = f"{name}/{axis}"
-            recording.log(entity, rr.SeriesLines(colors=color, names=text, widths=1.2), static=True, strict=True)
-            recording.send_columns(entity, moments, rr.Scalars.columns(scalars=values), strict=True)
+            style = rr.SeriesLines(colors=color, names=text, widths=1.2, aggregation_policy="MinMax")
+            recording.log(f"{name}/{axis}", style, static=True, strict=True)
+            recording.send_columns(f"{name}/{axis}", moments, rr.Scalars.columns(scalars=values), strict=True)
 
 
 def _blueprint() -> rrb.Blueprint:
-    """One view an axis, measured and simulated over each other, errors below."""
-    views = [
-        rrb.TimeSeriesView(
-            origin="/", contents=[f"measured/{a}", f"simulated/{a}"], name=f"F{a}, measured and simulated"
-        )
-        for a in "xyz"
-    ]
-    errors = rrb.TimeSeriesView(origin="/", contents=["error/**"], name="Error: simulated less measured")
+    """For each axis the whole record on the left and the close view around the cursor on the right; errors below."""
+    pairs = {f"F{a}, measured and simulated": [f"measured/{a}", f"simulated/{a}"] for a in "xyz"}
+    pairs["Error: simulated less measured"] = [f"error/{a}" for a in "xyz"]
     return rrb.Blueprint(
-        rrb.Vertical(*views, errors),
+        rrb.Horizontal(
+            rrb.Vertical(*(_curves(name, contents) for name, contents in pairs.items())),
+            rrb.Vertical(*(_curves(_CLOSE_NAME, contents, close=True) for contents in pairs.values())),
+            column_shares=[6, 5],
+        ),
         rrb.TimePanel(state="collapsed", timeline=layout.TIME),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
         auto_views=False,
         auto_layout=False,
+    )
+
+
+def _curves(name: str, contents: list[str], *, close: bool = False) -> rrb.TimeSeriesView:
+    """Curves over the whole record, or around the cursor."""
+    around = rr.VisibleTimeRange(
+        layout.TIME,
+        start=rr.TimeRangeBoundary.cursor_relative(seconds=-_CLOSE_S),
+        end=rr.TimeRangeBoundary.cursor_relative(seconds=_CLOSE_S),
+    )
+    whole = rr.TimeRange(start=rr.TimeRangeBoundary.infinite(), end=rr.TimeRangeBoundary.infinite())
+    return rrb.TimeSeriesView(
+        origin="/",
+        contents=contents,
+        name=name,
+        plot_legend=rrb.PlotLegend(visible=not close, corner=rrb.Corner2D.LeftTop),
+        time_ranges=[around] if close else None,
+        axis_x=None if close else rrb.TimeAxis(view_range=whole),
     )
 
 

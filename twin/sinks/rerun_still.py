@@ -8,22 +8,28 @@ from pathlib import Path
 
 import numpy as np
 import rerun as rr
+import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.sinks.rerun_file import RecordingFile
+
+#: Not that of runs, so that a viewer does not lay one out as the other.
+_APPLICATION = "twin_scene"
+#: What is seen of a scene from the front right above, in multiples of its size.
+_EYE = np.array((0.5, -0.75, 0.55))
 
 Colors = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class StillMesh:
-    """Triangles with one colour, or one a vertex, shape (n, 3) or (n, 4)."""
+    """Triangles of one colour, each shaded as flat as it is."""
 
     entity: str
     vertices_mm: FloatArray
     triangles: NDArray[np.int64]
-    colors: Colors
+    color: tuple[int, int, int]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -71,9 +77,12 @@ def write_still(path: Path, still: Still, *, force: bool = False) -> None:
         ArchiveError: a file that is there already, or cannot be written.
     """
     file = RecordingFile(path, force=force)
-    recording = rr.RecordingStream("twin")
+    recording = rr.RecordingStream(_APPLICATION)
     try:
         file.connect(recording)
+        recording.send_blueprint(_layout(still))
+        recording.set_log_tick_enabled(False)
+        recording.set_log_time_enabled(False)
         _log(recording, still)
         recording.flush()
         recording.disconnect()
@@ -88,13 +97,7 @@ def _log(recording: rr.RecordingStream, still: Still) -> None:
     log = recording.log
     log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     for mesh in still.meshes:
-        shape = rr.Mesh3D(
-            vertex_positions=mesh.vertices_mm,
-            triangle_indices=mesh.triangles,
-            vertex_normals=_normals(mesh.vertices_mm, mesh.triangles),
-            vertex_colors=mesh.colors,
-        )
-        log(mesh.entity, shape, static=True)
+        log(mesh.entity, _flat(mesh), static=True)
     for lines in still.lines:
         strips = rr.LineStrips3D(lines.lines_mm, colors=lines.color, radii=rr.Radius.ui_points(lines.width))
         log(lines.entity, strips, static=True)
@@ -105,13 +108,32 @@ def _log(recording: rr.RecordingStream, still: Still) -> None:
         log("report", rr.TextDocument(still.text, media_type="text/markdown"), static=True)
 
 
-def _normals(vertices: FloatArray, triangles: NDArray[np.int64]) -> FloatArray:
-    """Normals at vertices: means of the faces', weighted by area."""
-    a, b, c = (vertices[triangles[:, i]] for i in range(3))
-    cross = np.cross(b - a, c - a)
-    total = np.zeros_like(vertices)
-    for i in range(3):
-        np.add.at(total, triangles[:, i], cross)
-    length = np.linalg.norm(total, axis=1, keepdims=True)
-    normals: FloatArray = total / np.where(length > 0.0, length, 1.0)
-    return normals
+def _flat(mesh: StillMesh) -> rr.Mesh3D:
+    """A mesh whose triangles have corners, and so normals, of their own."""
+    corners = mesh.vertices_mm[mesh.triangles]
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(cross, axis=1, keepdims=True)
+    normals = cross / np.where(length > 0.0, length, 1.0)
+    return rr.Mesh3D(
+        vertex_positions=corners.reshape(-1, 3),
+        triangle_indices=np.arange(3 * len(corners)).reshape(-1, 3),
+        vertex_normals=np.repeat(normals, 3, axis=0),
+        albedo_factor=[*mesh.color, 255],
+    )
+
+
+def _layout(still: Still) -> rrb.Blueprint:
+    """The scene, with the text beside it."""
+    points = [m.vertices_mm for m in still.meshes]
+    low, high = np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
+    centre, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
+    eye = rrb.EyeControls3D(position=centre + size * _EYE, look_target=centre)
+    scene = rrb.Spatial3DView(origin="/", contents=["+ /**", "- /report"], name="Scene", eye_controls=eye)
+    return rrb.Blueprint(
+        rrb.Horizontal(scene, rrb.TextDocumentView(origin="/report", name="Report"), column_shares=[3, 1]),
+        rrb.TimePanel(state="hidden"),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        auto_views=False,
+        auto_layout=False,
+    )

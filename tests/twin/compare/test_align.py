@@ -53,6 +53,15 @@ def test_a_steady_part_has_rivals() -> None:
     assert within.lag_s == pytest.approx(0.0, abs=1e-5)
 
 
+def test_of_equal_delays_the_one_is_taken_that_covers_the_windows_and_is_nearest_to_0() -> None:
+    log = log_of(RUN, span_s=(4.0, 4.1), noise=0.02)
+    assert find_delay(RUN, log).lag_s == pytest.approx(0.0, abs=2e-5)
+    again = log_of(RUN, lag_s=-4.0, span_s=(0.0, 0.1), noise=0.02)
+    found = find_delay(RUN, again, windows=((4.03, 4.08),))
+    assert found.lag_s == pytest.approx(-4.0, abs=0.02 + 1e-4)
+    assert abs(found.lag_s * 120.0 - round(found.lag_s * 120.0)) < 0.01
+
+
 def test_no_overlap_within_reach() -> None:
     with pytest.raises(CompareError, match=r"no delay within 0.5 s at which the log follows the run; give it by --lag"):
         find_delay(RUN, log_of(RUN, lag_s=100.0, span_s=(100.0, 107.6)), within_s=0.5)

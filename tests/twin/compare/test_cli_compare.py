@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,14 +23,22 @@ TOOL = made_run()
 WINDOWS = ["--window", "3.00:3.02", "--window", "5.00:5.02"]
 
 
-@pytest.fixture
-def archive(tmp_path: Path) -> Path:
-    return write_run(tmp_path / "run.mcap")
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("made")
+    write_run(folder / "run.mcap")
+    write_log(folder / "ap1.csv", log_of(TOOL, lag_s=0.0123, add_n=(1.0, -2.0, 3.0)))
+    return folder
 
 
 @pytest.fixture
-def measured(tmp_path: Path) -> Path:
-    return write_log(tmp_path / "ap1.csv", log_of(TOOL, lag_s=0.0123, add_n=(1.0, -2.0, 3.0)))
+def archive(made: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copy(made / "run.mcap", tmp_path))
+
+
+@pytest.fixture
+def measured(made: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copy(made / "ap1.csv", tmp_path))
 
 
 def write_run(path: Path, **parameters: str) -> Path:
@@ -106,6 +115,12 @@ def test_the_jobs_measured_table_is_used(tmp_path: Path, capsys: pytest.CaptureF
     assert "no log given, and its job has no measured.file" in failed(capsys, plain)
 
 
+def test_a_run_against_a_run(archive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = compared(capsys, archive, shutil.copy(archive, tmp_path / "other.mcap"))
+    assert found["lag_s"] == pytest.approx(0.0, abs=1e-6) and found["correlation"] > 0.9999
+    assert found["measured_rpm"] == pytest.approx(3600.0) and found["warnings"] == []
+
+
 def test_an_angle_becomes_time_by_the_speed(archive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = log_of(TOOL, span_s=(3.0, 3.3))
     rows = np.column_stack([np.mod(360.0 * 60.0 * log.t_s, 360.0), log.force_n])
@@ -134,6 +149,12 @@ def test_report_is_one_file_with_pictures_in_it(
     assert "Report" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("axes", ["x=Fx,y=Fy", "z=Fz"])
+def test_report_of_some_axes(axes: str, archive: Path, measured: Path, tmp_path: Path) -> None:
+    assert run(["compare", str(archive), str(measured), "--map", axes, *WINDOWS, "--report", str(tmp_path)]) == 0
+    assert ("Fz</th>" in (tmp_path / "report.html").read_text()) == ("z" in axes)
+
+
 def test_report_of_the_whole_overlap(archive: Path, measured: Path, tmp_path: Path) -> None:
     assert run(["compare", str(archive), str(measured), "--report", str(tmp_path / "r")]) == 0
     assert "(whole overlap)" in (tmp_path / "r" / "report.html").read_text()
@@ -150,6 +171,9 @@ def test_the_comparisons_file_can_be_read_again(archive: Path, measured: Path, t
     assert len(forces.t_s) == pytest.approx(len(log.t_s) - 61, abs=2)
     np.testing.assert_allclose(forces.simulated_n - forces.measured_n + [1.0, -2.0, 3.0], 0.0, atol=0.05)
     assert run(["info", str(out)]) == 1
+    rrd = tmp_path / "c.rrd"
+    assert run(["view", str(out), "--rrd", str(rrd)]) == 0 and rrd.stat().st_size > 100_000
+    assert run(["view", str(out), "--rrd", str(rrd)]) == 1
 
 
 def test_recording_for_the_viewer(archive: Path, measured: Path, tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.compared import log_of, run
+from support.compared import log_of, run, write_log
 
 from twin.arrays import FloatArray, frozen
 from twin.compare.comparison import Comparison, compare
@@ -16,6 +16,7 @@ from twin.compare.metrics import axis_errors
 from twin.compare.run_forces import run_forces
 from twin.compare.settings import CompareSettings, ReadSettings
 from twin.errors import CompareError
+from twin.measured import force_log, read_log
 from twin.measured.filters import Filter
 from twin.measured.log import ForceLog
 
@@ -146,6 +147,13 @@ def test_a_unit_wrong_by_a_thousand_is_refused(factor: float, how: str, unit: st
         compare(RUN, log, CompareSettings())
     found = compare(RUN, log, CompareSettings(read=ReadSettings(unit="N")))
     assert any(f"times {how} than the run's" in w for w in found.warnings)
+
+
+def test_newtons_called_kilonewtons_are_told(tmp_path: Path) -> None:
+    path = write_log(tmp_path / "a.csv", log_of(RUN, rate_hz=1000.0), "t_s,Fx_kN,Fy_kN,Fz_kN")
+    log = force_log(read_log(path))
+    with pytest.raises(CompareError, match=r"times larger than the run's .* in N\? Give the unit by --unit N;"):
+        compare(RUN, log, CompareSettings())
 
 
 def test_too_few_samples_a_tooth_are_told() -> None:

@@ -14,7 +14,7 @@ def tree(part: Solid) -> ClosestPoints:
 
 
 def test_distances_from_a_box_are_those_of_the_formula() -> None:
-    points = np.random.default_rng(1).uniform(-3.0, 3.0, (2000, 3))
+    points = np.random.default_rng(1).uniform(-3.0, 3.0, (500, 3))
     found = tree(box((-1.0, -2.0, -1.5), (1.0, 2.0, 1.5))).ask(points)
     over = np.abs(points) - np.array([1.0, 2.0, 1.5])
     wanted = np.linalg.norm(np.maximum(over, 0.0), axis=1) + np.minimum(over.max(axis=1), 0.0)
@@ -25,7 +25,7 @@ def test_distances_from_a_box_are_those_of_the_formula() -> None:
 
 def test_signs_agree_with_the_winding_number() -> None:
     part = small_torus()
-    points = np.random.default_rng(2).uniform((-12, -12, -3), (12, 12, 3), (300, 3))
+    points = np.random.default_rng(2).uniform((-12, -12, -3), (12, 12, 3), (100, 3))
     found = tree(part).ask(points)
     inside = [winding_number(p, part.vertices_mm, part.triangles) > 0.5 for p in points]
     assert ((found.distance_mm < 0.0) == inside).all()
@@ -40,6 +40,6 @@ def test_corners_and_edges_of_a_notch_have_the_right_side() -> None:
 
 def test_answers_do_not_depend_on_threads() -> None:
     part = small_torus()
-    points = np.random.default_rng(3).uniform((-12, -12, -3), (12, 12, 3), (1000, 3))
+    points = np.random.default_rng(3).uniform((-12, -12, -3), (12, 12, 3), (100, 3))
     one, two = (tree(part).ask(points, threads) for threads in (1, 2))
     assert all(np.array_equal(a, b) for a, b in zip(one, two, strict=True))

@@ -12,12 +12,16 @@ from support.cut_logs import QUARTER_TURN, write_log
 from support.edge_integral import SOME, Pass, log_rows
 
 from twin.errors import IdentifyError, MeasuredError
+from twin.identify.cuts_file import Fit
 from twin.identify.harmonics import find_speed, of_samples, of_waveform, to_waveform
 from twin.identify.identify import Prepared, identify, prepare
 from twin.identify.load import cuts_from_dict
+from twin.identify.measure import harmonic_count
 from twin.identify.steady import find_cut, steady_part
 
-SIDE = Pass(diameter=8.0, corner=4.0, helix_deg=30.0, rpm=3600.0, feed=1200.0, axial=3.0, wall=(-math.inf, 0.0), points=200)
+SIDE = Pass(
+    diameter=8.0, corner=4.0, helix_deg=30.0, rpm=3600.0, feed=1200.0, axial=3.0, wall=(-math.inf, 0.0), points=200
+)
 
 
 def one_cut(folder: Path, given: Pass, t: np.ndarray, force: np.ndarray, **keys: Any) -> Prepared:
@@ -98,8 +102,10 @@ def test_windows_outside_the_log_and_too_short_ones_are_refused(tmp_path: Path) 
     t, force = log_rows(SIDE, SOME, rate_hz=3000.0, air_s=0.3, cut_s=0.4, phase_rad=0.3)
     with pytest.raises(MeasuredError, match=r"window 0.5 to 7 s is not in the log, which has 0.0000 to 0.9997 s"):
         one_cut(tmp_path, SIDE, t, force, window_s=[0.5, 7.0])
-    with pytest.raises(IdentifyError, match=r"window 0.5 to 0.52 s has fewer than two revolutions at 3600 rpm"):
-        one_cut(tmp_path, SIDE, t, force, window_s=[0.5, 0.52])
+    with pytest.raises(
+        IdentifyError, match=r"0.51 s has 31 samples, expected a whole revolution: 0.0167 s at 3600 rpm"
+    ):
+        one_cut(tmp_path, SIDE, t, force, window_s=[0.5, 0.51])
     with pytest.raises(IdentifyError, match=r"too short to have a steady part: the tool enters and leaves for 0.19"):
         one_cut(tmp_path, SIDE, t, force)
 
@@ -122,6 +128,31 @@ def test_another_speed_than_given_is_seen(tmp_path: Path) -> None:
     assert any("3000" in w and "3600" in w for w in found.warnings), found.warnings
 
 
+@pytest.mark.parametrize(("turns", "samples"), [(1, 360), (2, 360), (1, 90)])
+def test_a_revolution_is_enough(tmp_path: Path, turns: int, samples: int) -> None:
+    """Logs may hold a single revolution: as many samples as fill it, the last one before the first would come again."""
+    angle = np.arange(turns * samples) * 2.0 * math.pi / samples
+    force = SIDE.but(points=1000).forces(angle + 0.2, SOME)
+    found = one_cut(tmp_path, SIDE, angle * 60.0 / SIDE.rpm / (2.0 * math.pi), force).measured
+    assert found.mean_n == pytest.approx(force.mean(axis=0), abs=0.02)
+    assert found.rpm == 3600.0
+    assert found.harmonics is not None
+    assert found.harmonics[0].real == pytest.approx(
+        force.mean(axis=0), abs=0.02 * float(np.linalg.norm(force.mean(axis=0)))
+    )
+    assert any("too few revolutions to find it" in note for note in found.notes)
+
+
+def test_a_log_over_the_spindles_angle(tmp_path: Path) -> None:
+    degrees = np.arange(0.0, 1440.0, 2.0)
+    force = SIDE.forces(np.radians(degrees), SOME)
+    table = np.column_stack((degrees, force))
+    np.savetxt(tmp_path / "log.csv", table, delimiter=",", header="angle_deg,Fx_N,Fy_N,Fz_N", comments="", fmt="%.5f")
+    data = {"tool": SIDE.tool(), "cuts": [SIDE.cut("a") | {"log": "log.csv"}]}
+    found = prepare(cuts_from_dict(data, tmp_path / "cuts.toml"))[0].measured
+    assert found.mean_n == pytest.approx(force.mean(axis=0), abs=1e-3 * float(np.abs(force).max()))
+
+
 def test_find_cut_tells_air_from_cut_by_the_variation_alone() -> None:
     t, force = entering(4000.0)
     found = find_cut(t, force + 1e4, 1.0 / 60.0)
@@ -131,6 +162,20 @@ def test_find_cut_tells_air_from_cut_by_the_variation_alone() -> None:
     assert all(b <= 0.4 or a >= 1.2 for a, b in found.air_s)
     assert steady_part(found, 4.0, 20.0, 1.0 / 60.0) is not None
     assert steady_part(found, 40.0, 20.0, 1.0 / 60.0) is None
+
+
+@pytest.mark.parametrize(
+    ("keys", "samples", "count"),
+    [
+        ({}, 1000.0, 24),
+        ({}, 30.0, 12),
+        ({"harmonics": 8}, 1000.0, 8),
+        ({"lowpass_hz": 600.0}, 1000.0, 10),
+        ({}, 2.0, 0),
+    ],
+)
+def test_how_many_harmonics_are_compared(keys: dict[str, Any], samples: float, count: int) -> None:
+    assert harmonic_count(Fit(**keys), 2, 3600.0, samples) == count
 
 
 def test_speed_is_found_to_a_hundredth_of_a_revolution() -> None:

@@ -59,7 +59,9 @@ def test_one_cut_is_enough_for_a_waveform_but_not_for_means(bull_logs: tuple[Pat
     assert any("not determined by these cuts (3 independent equations for 6" in w for w in by_means.warnings)
 
 
-def synthetic(passes: tuple[Pass, ...], rng: np.random.Generator, noise_n: float, data: dict[str, Any]) -> list[Prepared]:
+def synthetic(
+    passes: tuple[Pass, ...], rng: np.random.Generator, noise_n: float, data: dict[str, Any]
+) -> list[Prepared]:
     """Cuts whose waveforms have noise of their own at every angle, without files."""
     cuts = cuts_from_dict(data, "cuts.toml")
     made = []
@@ -139,7 +141,9 @@ def test_cuts_held_out_are_reported_and_never_fitted(bull_logs: tuple[Path, dict
     last = with_it.cuts[-1]
     assert np.linalg.norm(last.residual_n) < 0.01 * np.linalg.norm(last.measured.mean_n)
     if method == "waveform":
-        assert last.waveform_error_n() == pytest.approx(0.0, abs=0.01 * float(np.linalg.norm(last.measured.mean_n)) + 3.0)
+        assert last.waveform_error_n() == pytest.approx(
+            0.0, abs=0.01 * float(np.linalg.norm(last.measured.mean_n)) + 3.0
+        )
 
 
 def test_a_cut_held_out_may_be_nonsense() -> None:
@@ -173,7 +177,9 @@ def test_the_search_goes_to_the_same_place_from_elsewhere() -> None:
 
 def test_waveforms_are_refused_where_there_are_none() -> None:
     cuts = cuts_from_dict(mean_tables(BULL_CUTS, SOME), "cuts.toml")
-    with pytest.raises(IdentifyError, match=r"cut 0_slot_80 has no waveform: it has a mean force only; use --method mean"):
+    with pytest.raises(
+        IdentifyError, match=r"cut 0_slot_80 has no waveform: it has a mean force only; use --method mean"
+    ):
         identify(cuts, "waveform")
 
 
@@ -189,6 +195,16 @@ def test_wrong_signs_and_units_are_seen(changed: dict[str, str], warning: str) -
     changed = {k: v for k, v in changed.items() if k != "unit"}
     found = identify(cuts_from_dict(data | {"defaults": changed}, "c.toml"))
     assert any(warning in w for w in found.warnings), found.warnings
+
+
+@pytest.mark.parametrize(
+    ("given", "hint"),
+    [("x=Fy,y=Fx,z=Fz", "x = y, y = x, z = z"), ("x=-Fx,y=-Fy,z=-Fz", "x = -x, y = -y, z = -z")],
+)
+def test_axes_under_which_the_forces_would_fit_are_named(given: str, hint: str) -> None:
+    data = mean_tables(BULL_CUTS, SOME)
+    found = identify(cuts_from_dict(data | {"defaults": {"map": given}}, "c.toml"))
+    assert found.warnings[-1] == f"mean forces would follow the model with {hint} of what the map gives"
 
 
 def test_an_axis_that_was_not_measured_is_left_out() -> None:

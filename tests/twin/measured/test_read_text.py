@@ -120,6 +120,15 @@ def test_no_time_needs_a_rate(tmp_path: Path) -> None:
     assert stated.rate_hz == 2500.0
 
 
+def test_settings_in_numbers_and_a_long_header_stand_above_the_names(tmp_path: Path) -> None:
+    above = "\n".join(["1,2,3,4", *(f"# setting {k} = {k}" for k in range(700)), "t,Fx,Fy,Fz"])
+    np.testing.assert_allclose(read(tmp_path, f"{above}\n{body(rows=ROWS * 1)}").force_n, WANT)
+
+
+def test_blank_lines_between_rows_are_nothing(tmp_path: Path) -> None:
+    np.testing.assert_allclose(read(tmp_path, "t,Fx,Fy,Fz\n\n" + body().replace("\n", "\n\n")).force_n, WANT)
+
+
 def test_repeated_headers_are_passed_over(tmp_path: Path) -> None:
     text = "t,Fx,Fy,Fz\ns,N,N,N\n" + body(rows=ROWS[:2]) + "t,Fx,Fy,Fz\ns,N,N,N\n" + body(rows=ROWS[2:])
     log = read(tmp_path, text)

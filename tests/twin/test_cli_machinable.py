@@ -1,0 +1,94 @@
+"""``twin machinable``."""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support import solids
+
+from twin.cli import run
+from twin.workpiece.from_mesh import load_mesh
+
+
+@pytest.fixture
+def pocket(tmp_path: Path) -> Path:
+    path = tmp_path / "pocket.stl"
+    solids.torus_example().write_stl(path, solids.pocket())
+    return path
+
+
+def test_a_table_of_tools_and_all_outputs(pocket: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = pocket.parent
+    words = ["machinable", str(pocket), "--tool", "flat 4", "--tool", "flat 16", "--pitch", "0.25", "--above"]
+    outputs = ["--rrd", str(folder / "a.rrd"), "--mesh", str(folder / "left"), "--plot", str(folder / "a.png")]
+    assert run([*words, *outputs]) == 0
+    text = capsys.readouterr().out
+    assert "26 x 26 x 10 mm, 28 triangles, slices 0.25 mm apart" in text
+    assert "flat 4: 4 regions" in text and "flat 16: 1 region" in text
+    assert (folder / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert (folder / "a.rrd").read_bytes().startswith(b"RRF2")
+    whole = load_mesh(folder / "left" / "flat_16.stl")
+    np.testing.assert_allclose(whole.vertices_mm.max(axis=0), (5.0, 5.0, 0.0), atol=1e-3)
+    assert load_mesh(folder / "left" / "flat_4.stl").volume_mm3 == pytest.approx(
+        6.0 * 4.0 * (1.0 - np.pi / 4) * 4.0, rel=0.03
+    )
+    # nothing is replaced unasked, and nothing is left half written
+    assert run([*words, *outputs]) == 1
+    assert "is there already" in capsys.readouterr().err
+    assert run([*words, *outputs, "--force"]) == 0
+    assert not list(folder.rglob("*.partial"))
+
+
+def test_json_and_the_largest_ball(pocket: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["machinable", str(pocket), "--tool", "ball 4", "--largest", "--pitch", "0.25", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    (tool,) = told["tools"]
+    assert told["pitch_mm"] == [0.25, 0.25, 0.25] and told["largest_ball_diameter_mm"] is None
+    assert tool["tool"] == "ball 4" and not tool["from_above"]
+    assert tool["volume_mm3"] == pytest.approx(sum(r["volume_mm3"] for r in tool["regions"]))
+    assert set(tool["regions"][0]) == {"volume_mm3", "thickness_mm", "deepest_mm", "low_mm", "high_mm", "centroid_mm"}
+
+
+def test_nothing_stays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    block = tmp_path / "block.stl"
+    solids.torus_example().write_stl(block, solids.box((0, 0, 0), (20, 20, 8)))
+    words = ["machinable", str(block), "--tool", "ball 6", "--largest", "--mesh", str(tmp_path / "left")]
+    assert run([*words, "--pitch", "0.5", "--plot", str(tmp_path / "a.png")]) == 0
+    text = capsys.readouterr().out
+    assert "nothing" in text and "Largest ball that finishes the part: diameter 8 mm." in text
+    assert list((tmp_path / "left").iterdir()) == []
+
+
+def test_a_pitch_too_coarse_for_the_thickness_asked_for_is_told(
+    pocket: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["machinable", str(pocket), "--tool", "ball 4", "--pitch", "0.5", "--thin", "0.01"]) == 0
+    told = capsys.readouterr().err
+    assert "slices 0.5 mm apart may show leftovers up to 0.375 mm thick that are none; for 0.01 mm expected" in told
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], 'no tool; expected --tool "ball 8", or --largest'),
+        (["--tool", "ball"], 'tool "ball"; expected "ball D"'),
+        (["--tool", "ball 8", "--pitch", "0"], "slice pitch 0 mm; expected a number above 0"),
+        (["--tool", "taper 4 a5"], "offsets with taper tools: not possible"),
+        (["--tool", "ball 8", "--rrd", "a.txt"], "a.txt: expected a file name that ends in .rrd"),
+        (["--tool", "ball 8", "--plot", "no/a.png"], "there is no folder no; expected one that exists"),
+    ],
+)
+def test_mistakes(pocket: Path, words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["machinable", str(pocket), *words]) == 1
+    assert message in capsys.readouterr().err
+
+
+def test_an_open_part_is_refused(pocket: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    data = pocket.read_bytes()
+    pocket.write_bytes(data[:80] + struct.pack("<I", 27) + data[84:-50])
+    assert run(["machinable", str(pocket), "--tool", "ball 4"]) == 1
+    assert "the surface leaks: 3 open edges around 1 hole" in capsys.readouterr().err
