@@ -89,7 +89,7 @@ def replay_tables(chain: MoldChain, program: Path) -> dict[str, Any]:
         "machine": {"rapid_mm_min": job.machine.rapid_mm_min, "tool_change_s": job.machine.tool_change_s},
         "stock": {"box_mm": {"min": space.low_mm.tolist(), "max": space.high_mm.tolist()}},
         "tools": [_tool_table(tool) for tool in job.tools],
-        "simulation": {"slice_pitch_mm": 0.25, "step_mm": 0.5, "angle_step_deg": 5.0},
+        "simulation": {"slice_pitch_mm": 0.4, "step_mm": 0.5, "angle_step_deg": 5.0},
     }
 
 
