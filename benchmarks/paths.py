@@ -46,6 +46,7 @@ def main() -> None:
         make_torus.write_stl(stl, make_torus.torus())
         mesh = slice_part(stl, 5.0).mesh
         cutter = DropCutter(surface_of_mesh(mesh.vertices_mm, mesh.triangles), parse_tool("ball 8"), floor_mm=-10.0)
+        at_pitch(1.0, stl, cutter)  # kernels are loaded
         figures = {pitch: at_pitch(float(pitch), stl, cutter) for pitch in arguments.pitches.split(",")}
     report("paths", pitches=figures)
 

@@ -13,13 +13,16 @@ PARTS = 8
 FEW = 4096
 
 
-def in_parts(work: Callable[[int, int], None], count: int, *, threads: int | None = None, parts: int = PARTS) -> None:
+def in_parts(
+    work: Callable[[int, int], None], count: int, *, threads: int | None = None, parts: int = PARTS, few: int = FEW
+) -> None:
     """Call ``work(first, last)`` for parts of range(count).
 
     Args:
         threads: how many work, None for all cores.
+        few: so many items stay on one thread.
     """
-    parts = parts if count > FEW else 1
+    parts = parts if count > few else 1
     bounds = [count * k // parts for k in range(parts + 1)]
     run_all([_part(work, a, b) for a, b in pairwise(bounds) if b > a], threads)
 

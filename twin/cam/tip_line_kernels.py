@@ -48,8 +48,10 @@ def profile_pieces(
         points: shape (n, 2), rings one after the other, material on the left.
         rings: where each ring begins, and the end.
         sections: the first ring of each section, and the end.
-        segments: shape (n, 6), filled with rows u, v of the left end, u, v of the right end, outward normal.
-        corners: shape (n, 6), filled with rows u, v, normal of the side to the right, normal of the side to the left.
+        segments: shape (n, 7), filled with rows u, v of the left end, u, v of the right end, outward normal, and how
+            far the section's rows up to this one reach to the right; increasing in u of the left end.
+        corners: shape (n, 6), filled with rows u, v, normal of the side to the right, normal of the side to the left;
+            increasing in u.
         segment_begins, corner_begins: filled with where each section's rows begin, and the end.
     """
     ns, nc = 0, 0
@@ -79,7 +81,33 @@ def profile_pieces(
                     corners[nc, 4], corners[nc, 5] = (nu, nv) if nv > 0.0 else (-1.0, 0.0)
                     nc += 1
                 au, av, mu, mv = bu, bv, nu, nv
+        _sort_rows(segments[segment_begins[k] : ns])
+        _sort_rows(corners[corner_begins[k] : nc])
+        reach = -math.inf
+        for i in range(segment_begins[k], ns):
+            reach = max(reach, segments[i, 2])
+            segments[i, 6] = reach
     segment_begins[len(sections) - 1], corner_begins[len(sections) - 1] = ns, nc
+
+
+@njit(cache=True, nogil=True)
+def _sort_rows(rows: FloatArray) -> None:
+    """Put rows in the order of their first number."""
+    order = np.argsort(rows[:, 0], kind="mergesort")
+    rows[:] = rows.copy()[order]
+
+
+@njit(cache=True, nogil=True)
+def _first_from(rows: FloatArray, column: int, least: float) -> int:
+    """The first row whose number in a column that does not decrease is at least this."""
+    low, high = 0, len(rows)
+    while low < high:
+        middle = (low + high) // 2
+        if rows[middle, column] < least:
+            low = middle + 1
+        else:
+            high = middle
+    return low
 
 
 @njit(cache=True, nogil=True)
@@ -150,8 +178,10 @@ def _section_row(
         _touch_table(d2, disc, corner, width, place, slope)
     rho2 = corner * corner - d2
     low, high = start - _TIE * step, start + (n - 1 + _TIE) * step
-    for i in range(len(segments)):
-        if segments[i, 2] < low - radius or segments[i, 0] > high + radius:
+    for i in range(_first_from(segments, 6, low - radius), len(segments)):
+        if segments[i, 0] > high + radius:
+            break
+        if segments[i, 2] < low - radius:
             continue
         nu, nv = segments[i, 4], segments[i, 5]
         s = _touch(nu, nv, width, round_end, place, slope)
@@ -167,10 +197,10 @@ def _section_row(
         climb *= step
         for k in range(first, last + 1):
             row[k] = max(row[k], height + climb * k)
-    for i in range(len(corners)):
+    for i in range(_first_from(corners, 0, low - radius), len(corners)):
         u, v = corners[i, 0], corners[i, 1]
-        if u < low - radius or u > high + radius:
-            continue
+        if u > high + radius:
+            break
         right = u + _touch(corners[i, 2], corners[i, 3], width, round_end, place, slope)
         left = u + _touch(corners[i, 4], corners[i, 5], width, round_end, place, slope)
         if right < low or left > high:
@@ -238,7 +268,10 @@ def _highest(y: FloatArray, rows: FloatArray, smooth: bool, heights: FloatArray,
 def _profile_row(segments: FloatArray, start: float, step: float, row: FloatArray) -> None:
     """Heights of a section itself."""
     row[:] = -math.inf
-    for i in range(len(segments)):
+    end = start + (len(row) - 1 + _TIE) * step
+    for i in range(_first_from(segments, 6, start - _TIE * step), len(segments)):
+        if segments[i, 0] > end:
+            break
         first = max(0, math.ceil((segments[i, 0] - start) / step - _TIE))
         last = min(len(row) - 1, math.floor((segments[i, 2] - start) / step + _TIE))
         climb = -segments[i, 4] / segments[i, 5]
@@ -361,17 +394,20 @@ def refine(
     """
     radius = disc + corner
     n = heights.shape[1]
-    rows, two, here = np.empty((_ASKED, n)), np.empty((2, n)), np.empty(n)
+    rows, two, here = np.empty((2 * _ASKED, n)), np.empty((2, n)), np.empty(n)
     best = np.empty(n, dtype=np.int64)
+    beside = _ASKED // 2
     place, slope = np.empty(_TABLE), np.empty(_TABLE)
     for c in range(len(cells)):
         heights[c] = -math.inf
         begin, end = _reach(positions, cells[c, 0], radius)
-        for side in range(2):
-            middle = sections[c, side]
-            if middle < 0 or (side == 1 and middle == sections[c, 0]):
+        low, high = min(sections[c, 0], sections[c, 1]), max(sections[c, 0], sections[c, 1])
+        together = low >= 0 and high - low < _ASKED
+        for side in range(1 if together or low == high else 2):
+            a, b = (low, high) if together else (sections[c, side], sections[c, side])
+            if b < 0:
                 continue
-            first, last = max(begin, middle - _ASKED // 2), min(end, middle + _ASKED // 2 + 1)
+            first, last = max(begin, a - beside), min(end, b + beside + 1)
             near = rows[: max(0, last - first)]
             near[:] = -math.inf
             for k in range(first, last):

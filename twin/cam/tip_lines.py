@@ -23,6 +23,8 @@ from twin.cam.threads import in_parts
 from twin.geometry.clip import DECIMALS, LEAST_AREA_MM2
 from twin.geometry.region import Region, signed_area_mm2
 
+#: Lines, and cells to refine, that are not worth several threads.
+_FEW_PLANES, _FEW_CELLS = 4, 64
 #: A rough cell is cut into this many.
 _FINER = 16
 #: Distance of the places of `tip_regions`, in square roots of chord times radius: an arc's own chord would be sqrt(8).
@@ -98,7 +100,7 @@ class Profiles:
         points = np.concatenate(rings) if rings else np.empty((0, 2))
         begins = np.cumsum([0] + [len(r) for r in rings])
         firsts = np.cumsum([0] + [len(region.rings) for region in sections.regions])
-        segments, corners = np.empty((len(points), 6)), np.empty((len(points), 6))
+        segments, corners = np.empty((len(points), 7)), np.empty((len(points), 6))
         segment_begins, corner_begins = np.empty((2, len(firsts)), dtype=np.int64)
         kernels.profile_pieces(points, begins, firsts, segments, segment_begins, corners, corner_begins)
         low, high = (float(points[:, 0].min()), float(points[:, 0].max())) if len(points) else (0.0, 0.0)
@@ -172,7 +174,7 @@ def _heights(
             best[first:last],
         )
 
-    in_parts(part, len(planes), threads=threads)
+    in_parts(part, len(planes), threads=threads, few=_FEW_PLANES)
     return heights + element.drop_mm, best
 
 
@@ -296,7 +298,7 @@ def _refined(
             heights[first:last],
         )
 
-    in_parts(part, len(cells), threads=threads)
+    in_parts(part, len(cells), threads=threads, few=_FEW_CELLS)
     return heights + element.drop_mm
 
 

@@ -38,8 +38,9 @@ from twin.workpiece.from_mesh import Solid
 Report = Callable[[str, float], None]
 #: Chords of inflated sections stand this part of the pitch inside their arcs.
 _CHORD_PITCHES = 0.005
-#: Chords of rows stand no farther off the tip's true line.
-_CHORD_MM = 0.0005
+#: Chords of rows stand no farther off the tip's true line; or this part of the allowance, or half the tool's sagitta
+#: over a pitch, of which the slices know little anyway.
+_CHORD_MM, _CHORD_ALLOWANCE = 0.0005, 0.05
 #: Planes that are inflated between two reports.
 _PLANES_TOGETHER = 32
 #: What a contour's overhang lacks to the tool's radius, and a few chords: flush sides of the stock are left alone.
@@ -146,12 +147,14 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
     profiles = Profiles.of(ground.part.sections(ACROSS[settings.direction]))
     places = Places.between(float(low[along]), float(high[along]), settings.pitch_mm)
     element = StructuringElement.tool(ground.tool)
+    sagitta = settings.pitch_mm**2 / (8.0 * ground.tool.max_radius_mm)
+    chord = max(_CHORD_MM, _CHORD_ALLOWANCE * settings.allowance_mm, 0.5 * sagitta)
     passes: list[Pass] = []
     for layer in reversed(range(settings.layers)):
         report("rows", 1.0 - (layer + 1) / settings.layers)
         left = settings.allowance_mm + layer * settings.axial_depth_mm
         floor = ground.floor_mm + left
-        lines = tip_lines(profiles, element, at, places, floor, allowance_mm=left, chord_mm=_CHORD_MM)
+        lines = tip_lines(profiles, element, at, places, floor, allowance_mm=left, chord_mm=chord)
         rows = Rows(direction=settings.direction, at_mm=at, lines_mm=lines)
         options = ScanOptions(
             top_mm=float(ground.stock_mm[1, 2]) + _AIR_MM,
