@@ -56,7 +56,8 @@ def verify(
 
     check_outputs({"picture": plot, "recording": rrd}, force=force)
     if not tolerance > 0.0 or (excess is not None and not excess > 0.0):
-        raise ToolPathError(f"tolerance {tolerance:g} mm, excess {excess} mm: expected numbers above 0")
+        told = f"tolerance {tolerance:g} mm" + ("" if excess is None else f", excess {excess:g} mm")
+        raise ToolPathError(f"{told}: expected numbers above 0")
     job, design = load_job(job_file), load_mesh(part)
     if pitch is not None:
         job = job.with_pitch(pitch)
