@@ -63,6 +63,7 @@ def identify(
     mean: linear least squares on mean forces. iterative: search that matches simulated mean forces. waveform: least
     squares on the force over the revolution, phases found, with --runout the runout too.
     """
+    from twin.errors import IdentifyError
     from twin.identify.identify import identify as find
     from twin.identify.load import load_cuts
     from twin.identify.write import refuse_existing
@@ -76,7 +77,13 @@ def identify(
     refuse_existing([p for p in (out, plot) if p is not None], force=force)
     with _said() as say:
         result = find(cuts, method.value if method is not None else None, say)
-    _write(result, out, plot, force=force)
+    try:
+        _write(result, out, plot, force=force)
+    except IdentifyError:  # what was found tells why no set can be written
+        if not as_json:
+            _print(cuts, result, {}, verbose=verbose)
+            _warn(result)
+        raise
     if as_json:
         _print_json(result, out, plot)
     else:
