@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 from twin.arrays import FloatArray, frozen
 from twin.cam import dexel_kernels as kernels
 from twin.cam.strokes import CHORD_MM, Strokes
-from twin.cam.threads import PARTS, run_all
 from twin.errors import StockError
+from twin.geometry.threads import PARTS, run_all
 from twin.motion.path import Move
 from twin.tools.shape import ToolShape
 

@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from twin.arrays import FloatArray
 from twin.cam import drop_cutter_kernels as kernels
 from twin.cam.surface import Surface, surface_of
-from twin.cam.threads import in_parts, run_all
 from twin.errors import ToolError
+from twin.geometry.threads import in_parts, run_all
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
 

@@ -21,8 +21,8 @@ from twin.cam import dexel_kernels as kernels
 from twin.cam.dexel import Dexels
 from twin.cam.drop_cutter import DropCutter
 from twin.cam.surface import Surface
-from twin.cam.threads import in_parts
 from twin.errors import ToolError
+from twin.geometry.threads import in_parts
 from twin.tools.shape import ToolShape
 
 #: Material thinner than this above a tool counts as none, mm.

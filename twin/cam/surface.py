@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from twin.arrays import FloatArray
 from twin.cam import surface_kernels as kernels
-from twin.cam.threads import in_parts
 from twin.errors import MeshError
 from twin.geometry.slicing_kernels import weld
+from twin.geometry.threads import in_parts
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -19,9 +19,9 @@ from twin.arrays import FloatArray
 from twin.cam import tip_line_kernels as kernels
 from twin.cam.element import StructuringElement
 from twin.cam.sections import Sections
-from twin.cam.threads import in_parts
 from twin.geometry.clip import DECIMALS, LEAST_AREA_MM2
 from twin.geometry.region import Region, signed_area_mm2
+from twin.geometry.threads import in_parts
 
 #: Lines, and cells to refine, that are not worth several threads.
 _FEW_PLANES, _FEW_CELLS = 4, 64

@@ -7,9 +7,6 @@ the sum of the normals at the edge, or from the sum weighted by angles at the co
 from __future__ import annotations
 
 import math
-import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -18,11 +15,12 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry import closest_kernels as kernels
 from twin.geometry.slicing import MeshEdges
+from twin.geometry.threads import in_parts
 
+#: Points that are not worth several threads.
+_FEW = 64
 #: Triangles of a leaf.
 _LEAF = 4
-#: Parts of a question; the same for any number of threads, so that answers are the same too.
-_PARTS = 8
 #: Cells along each axis that triangles are sorted by (Morton, 1966).
 _BITS = 10
 
@@ -73,19 +71,13 @@ class ClosestPoints:
                 points, first, last, self._corners, _LEAF, self._levels, self._boxes, places, leaves, features
             )
 
-        _in_parts(work, count, threads or os.cpu_count() or 1)
+        in_parts(work, count, threads=threads, few=_FEW)
         triangles = self._order[leaves]
         normals = self._normals[triangles, features]
         away = points - places
         side = np.einsum("ij,ij->i", away, normals)
         distance = np.copysign(np.linalg.norm(away, axis=1), side)
         return Nearest(distance, places, normals, triangles)
-
-
-def _in_parts(work: Callable[[int, int], None], count: int, threads: int) -> None:
-    bounds = [count * i // _PARTS for i in range(_PARTS + 1)]
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        list(pool.map(work, bounds[:-1], bounds[1:]))
 
 
 def _morton(points: FloatArray) -> NDArray[np.int64]:

@@ -14,8 +14,8 @@ from twin.arrays import FloatArray
 from twin.cam import drop_cutter
 from twin.cam.drop_cutter import EDGE, FACE, FLOOR, VERTEX, DropCutter
 from twin.cam.surface import surface_of, surface_of_mesh
-from twin.cam.threads import FEW, in_parts
 from twin.errors import MeshError, ToolError
+from twin.geometry.threads import FEW, in_parts
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
 
