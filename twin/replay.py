@@ -28,7 +28,7 @@ from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Move
 from twin.record import Collision, CollisionKind, ForceSamples, Record, RunSummary, Step
 from twin.run.clock import SpindleClock, Turned
-from twin.run.contacts import Contact, Contacts, collision_record, point
+from twin.run.contacts import Contact, Contacts, box_of, collision_record, forbidden, point
 from twin.run.header import run_header
 from twin.run.material import Material
 from twin.run.nc_events import nc_event
@@ -136,7 +136,7 @@ class Replay:
     def _move(self, move: Move) -> Iterator[Record]:
         """Step a motion: engagement and forces at each step, then its material removed."""
         tool = self._tools.get(move.tool)
-        if tool is None or not self._material.near(tool, *_box(move)):
+        if tool is None or not self._material.near(tool, *box_of(move)):
             for start, end, duration_s in _pieces(move, math.inf, 0.5 * self.job.simulation.slice_pitch_mm):
                 turned = self._clock.advance(self._t_s, duration_s, move.spindle_rpm)
                 yield self._step(move, start, end, duration_s, turned)
@@ -147,7 +147,7 @@ class Replay:
             begun_s = self._t_s
             for a, b, part_s in _frames(start, end, duration_s, self._frame_s):
                 yield from self._piece(move, tool, a, b, part_s)
-                contacts.add(self._material.cut(tool, a, b, _forbidden(move)), begun_s, start)
+                contacts.add(self._material.cut(tool, a, b, forbidden(move)), begun_s, start)
                 if self._preview is not None and self._preview.due(self._t_s):
                     yield from self._changed_patches()
             contacts.add(self._material.touches(tool, start, end), begun_s, start)
@@ -158,7 +158,7 @@ class Replay:
         self, move: Move, tool: ToolSetup, start: FloatArray, end: FloatArray, duration_s: float
     ) -> Iterator[Record]:
         """The steps of one straight piece of a motion."""
-        if _forbidden(move) is None and np.any(end != start):
+        if forbidden(move) is None and np.any(end != start):
             yield from self._cut(move, tool, start, end, duration_s)
         else:
             yield self._step(move, start, end, duration_s, self._clock.advance(self._t_s, duration_s, move.spindle_rpm))
@@ -313,19 +313,3 @@ def _frames(
     ends = [start + (end - start) * (i / count) for i in range(count)] + [end]
     for a, b in pairwise(ends):
         yield a, b, duration_s / count
-
-
-def _box(move: Move) -> tuple[FloatArray, FloatArray]:
-    """Two opposite corners of a motion's box."""
-    if move.arc is None:
-        return move.start_mm, move.end_mm
-    corners = move.corners_mm(math.inf, 0.01 * move.length_mm)
-    reach = 0.02 * move.length_mm
-    return corners.min(axis=0) - reach, corners.max(axis=0) + reach
-
-
-def _forbidden(move: Move) -> CollisionKind | None:
-    """What it is called when this motion meets material, None where cutting is what it is for."""
-    if move.rapid:
-        return "rapid"
-    return "spindle-stopped" if move.spindle_rpm == 0.0 else None

@@ -69,11 +69,6 @@ def a_point_of(polygon: Area) -> FloatArray:
     return np.array([point.x, point.y])
 
 
-def length_of(polygon: Area) -> float:
-    """Length of a polygon's borders."""
-    return float(shapely.length(polygon))
-
-
 def size_of(polygon: Area) -> float:
     """Area of a polygon, mm2."""
     return float(shapely.area(polygon))

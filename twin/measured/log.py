@@ -125,11 +125,6 @@ class ForceLog:
         """Times of the first and the last sample."""
         return float(self.t_s[0]), float(self.t_s[-1])
 
-    def resultant_n(self) -> FloatArray:
-        """Shape (n,), magnitude of the force over the measured axes."""
-        length: FloatArray = np.linalg.norm(self.force_n, axis=1)
-        return length
-
 
 def gaps_of(t_s: FloatArray, rate_hz: float) -> tuple[Gap, ...]:
     """Places where the time makes a leap; in samples that are uneven all along, a leap far beyond their steps.

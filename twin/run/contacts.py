@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -66,3 +67,19 @@ def collision_record(kind: CollisionKind, contact: Contact, move: Move, program:
 def point(p: FloatArray) -> tuple[float, float, float]:
     """Coordinates as plain numbers."""
     return float(p[0]), float(p[1]), float(p[2])
+
+
+def box_of(move: Move) -> tuple[FloatArray, FloatArray]:
+    """Two opposite corners of a motion's box."""
+    if move.arc is None:
+        return move.start_mm, move.end_mm
+    corners = move.corners_mm(math.inf, 0.01 * move.length_mm)
+    reach = 0.02 * move.length_mm
+    return corners.min(axis=0) - reach, corners.max(axis=0) + reach
+
+
+def forbidden(move: Move) -> CollisionKind | None:
+    """What it is called when this motion meets material, None where cutting is what it is for."""
+    if move.rapid:
+        return "rapid"
+    return "spindle-stopped" if move.spindle_rpm == 0.0 else None

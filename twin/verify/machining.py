@@ -11,13 +11,12 @@ import numpy as np
 from gcode.dialects import dialect_named
 from gcode.interpret import interpret
 from gcode.program import read_program
-from twin.arrays import FloatArray
 from twin.errors import ReplayError
 from twin.job import Job
 from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Move
-from twin.record import Collision, CollisionKind
-from twin.run.contacts import Contacts, collision_record
+from twin.record import Collision
+from twin.run.contacts import Contacts, box_of, collision_record, forbidden
 from twin.run.material import Material
 from twin.run.setup import machine_settings, stock_slices, tool_setup, workpiece
 from twin.tolerance import Tolerance
@@ -56,10 +55,10 @@ def machined(
         for move in moves:
             at(t_s, move.nc_line)
             tool = tools.get(move.tool)
-            if tool is not None and material.near(tool, *_box(move)):
+            if tool is not None and material.near(tool, *box_of(move)):
                 contacts = Contacts()
                 for start, end in pairwise(move.corners_mm(math.inf, tolerance.chord_mm)):
-                    contacts.add(material.cut(tool, start, end, _forbidden(move)), t_s, start)
+                    contacts.add(material.cut(tool, start, end, forbidden(move)), t_s, start)
                     contacts.add(material.touches(tool, start, end), t_s, start)
                 collisions += [
                     collision_record(kind, contact, move, str(job.program.file))
@@ -88,19 +87,3 @@ def _moves(job: Job) -> Iterator[Move]:
     for item in moves:
         if isinstance(item, Move) and item.length_mm > 0.0:
             yield item
-
-
-def _box(move: Move) -> tuple[FloatArray, FloatArray]:
-    """Two opposite corners of a motion's box."""
-    if move.arc is None:
-        return move.start_mm, move.end_mm
-    corners = move.corners_mm(math.inf, 0.01 * move.length_mm)
-    reach = 0.02 * move.length_mm
-    return corners.min(axis=0) - reach, corners.max(axis=0) + reach
-
-
-def _forbidden(move: Move) -> CollisionKind | None:
-    """What it is called when this motion meets material, None where cutting is what it is for."""
-    if move.rapid:
-        return "rapid"
-    return "spindle-stopped" if move.spindle_rpm == 0.0 else None
