@@ -98,12 +98,12 @@ def _sort_rows(rows: FloatArray) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _first_from(rows: FloatArray, column: int, least: float) -> int:
-    """The first row whose number in a column that does not decrease is at least this."""
-    low, high = 0, len(rows)
+def _first_from(numbers: FloatArray, least: float) -> int:
+    """The first of some numbers that do not decrease that is at least this."""
+    low, high = 0, len(numbers)
     while low < high:
         middle = (low + high) // 2
-        if rows[middle, column] < least:
+        if numbers[middle] < least:
             low = middle + 1
         else:
             high = middle
@@ -157,9 +157,51 @@ def _touch(nu: float, nv: float, rho: float, round_end: bool, place: FloatArray,
 
 
 @njit(cache=True, nogil=True)
+def _shifts(
+    normals_u: FloatArray,
+    normals_v: FloatArray,
+    rho: float,
+    round_end: bool,
+    place: FloatArray,
+    slope: FloatArray,
+    shifts: FloatArray,
+) -> None:
+    """`_touch` of many sides."""
+    if round_end:
+        for i in range(len(normals_u)):
+            shifts[i] = rho * normals_u[i]
+    else:
+        for i in range(len(normals_u)):
+            shifts[i] = _touch(normals_u[i], normals_v[i], rho, round_end, place, slope)
+
+
+@njit(cache=True, nogil=True)
+def _spans(
+    left: FloatArray,
+    right: FloatArray,
+    left_shifts: FloatArray,
+    right_shifts: FloatArray,
+    start: float,
+    step: float,
+    count: int,
+    first: FloatArray,
+    last: FloatArray,
+) -> None:
+    """First and last place that each piece covers; the first is beyond the last where it covers none.
+
+    Most pieces of fine meshes cover none, so this loop has no branches: the compiler makes it do several at once.
+    """
+    inverse, most = 1.0 / step, count - 1.0
+    for i in range(len(left)):
+        first[i] = max(0.0, np.ceil((left[i] + left_shifts[i] - start) * inverse - _TIE))
+        last[i] = min(most, np.floor((right[i] + right_shifts[i] - start) * inverse + _TIE))
+
+
+@njit(cache=True, nogil=True)
 def _section_row(
     segments: FloatArray,
     corners: FloatArray,
+    pieces: tuple[int, int, int, int],
     d2: float,
     disc: float,
     corner: float,
@@ -167,54 +209,49 @@ def _section_row(
     step: float,
     place: FloatArray,
     slope: FloatArray,
+    work: FloatArray,
     row: FloatArray,
 ) -> None:
-    """Raise a row of heights to the inflated profile of one section."""
+    """Raise a row of heights to the inflated profile of one section, whose rows are given by where they begin and end.
+
+    ``work`` has four rows, as long as the most pieces of a section.
+    """
     n = len(row)
     radius = disc + corner
     width = math.sqrt(radius * radius - d2)
     round_end = disc == 0.0
     if not round_end:
         _touch_table(d2, disc, corner, width, place, slope)
+    low, high = start - _TIE * step - width, start + (n - 1 + _TIE) * step + width
+    a = pieces[0] + _first_from(segments[6, pieces[0] : pieces[1]], low)
+    b = a + _first_from(segments[0, a : pieces[1]], high)
+    shifts, firsts, lasts = work[0, : b - a], work[2, : b - a], work[3, : b - a]
+    _shifts(segments[4, a:b], segments[5, a:b], width, round_end, place, slope, shifts)
+    _spans(segments[0, a:b], segments[2, a:b], shifts, shifts, start, step, n, firsts, lasts)
+    for i in range(b - a):
+        if firsts[i] <= lasts[i]:
+            climb = -segments[4, a + i] / segments[5, a + i]
+            left = segments[0, a + i] + shifts[i]
+            height = segments[1, a + i] - _outline(shifts[i], d2, disc, corner) + climb * (start - left)
+            climb *= step
+            for k in range(int(firsts[i]), int(lasts[i]) + 1):
+                row[k] = max(row[k], height + climb * k)
+    a = pieces[2] + _first_from(corners[0, pieces[2] : pieces[3]], low)
+    b = a + _first_from(corners[0, a : pieces[3]], high)
+    rights, lefts, firsts, lasts = work[0, : b - a], work[1, : b - a], work[2, : b - a], work[3, : b - a]
+    _shifts(corners[2, a:b], corners[3, a:b], width, round_end, place, slope, rights)
+    _shifts(corners[4, a:b], corners[5, a:b], width, round_end, place, slope, lefts)
+    _spans(corners[0, a:b], corners[0, a:b], lefts, rights, start, step, n, firsts, lasts)
     rho2 = corner * corner - d2
-    low, high = start - _TIE * step, start + (n - 1 + _TIE) * step
-    for i in range(_first_from(segments, 6, low - radius), len(segments)):
-        if segments[i, 0] > high + radius:
-            break
-        if segments[i, 2] < low - radius:
-            continue
-        nu, nv = segments[i, 4], segments[i, 5]
-        s = _touch(nu, nv, width, round_end, place, slope)
-        left, right = segments[i, 0] + s, segments[i, 2] + s
-        if right < low or left > high:
-            continue
-        first = max(0, math.ceil((left - start) / step - _TIE))
-        last = min(n - 1, math.floor((right - start) / step + _TIE))
-        if first > last:
-            continue
-        climb = -nu / nv
-        height = segments[i, 1] - _outline(s, d2, disc, corner) + climb * (start - left)
-        climb *= step
-        for k in range(first, last + 1):
-            row[k] = max(row[k], height + climb * k)
-    for i in range(_first_from(corners, 0, low - radius), len(corners)):
-        u, v = corners[i, 0], corners[i, 1]
-        if u > high + radius:
-            break
-        right = u + _touch(corners[i, 2], corners[i, 3], width, round_end, place, slope)
-        left = u + _touch(corners[i, 4], corners[i, 5], width, round_end, place, slope)
-        if right < low or left > high:
-            continue
-        first = max(0, math.ceil((left - start) / step - _TIE))
-        last = min(n - 1, math.floor((right - start) / step + _TIE))
-        if round_end:
-            v -= corner
-            for k in range(first, last + 1):
+    for i in range(b - a):
+        if firsts[i] <= lasts[i]:
+            u, v = corners[0, a + i], corners[1, a + i]
+            for k in range(int(firsts[i]), int(lasts[i]) + 1):
                 s = start + step * k - u
-                row[k] = max(row[k], v + math.sqrt(max(0.0, rho2 - s * s)))
-        else:
-            for k in range(first, last + 1):
-                row[k] = max(row[k], v - _outline(start + step * k - u, d2, disc, corner))
+                if round_end:
+                    row[k] = max(row[k], v - corner + math.sqrt(max(0.0, rho2 - s * s)))
+                else:
+                    row[k] = max(row[k], v - _outline(s, d2, disc, corner))
 
 
 @njit(cache=True, nogil=True)
@@ -265,18 +302,27 @@ def _highest(y: FloatArray, rows: FloatArray, smooth: bool, heights: FloatArray,
 
 
 @njit(cache=True, nogil=True)
-def _profile_row(segments: FloatArray, start: float, step: float, row: FloatArray) -> None:
-    """Heights of a section itself."""
+def _profile_row(segments: FloatArray, begin: int, end: int, start: float, step: float, row: FloatArray) -> None:
+    """Heights of a section itself, whose segments are given by where they begin and end."""
     row[:] = -math.inf
-    end = start + (len(row) - 1 + _TIE) * step
-    for i in range(_first_from(segments, 6, start - _TIE * step), len(segments)):
-        if segments[i, 0] > end:
+    far = start + (len(row) - 1 + _TIE) * step
+    for i in range(begin + _first_from(segments[6, begin:end], start - _TIE * step), end):
+        if segments[0, i] > far:
             break
-        first = max(0, math.ceil((segments[i, 0] - start) / step - _TIE))
-        last = min(len(row) - 1, math.floor((segments[i, 2] - start) / step + _TIE))
-        climb = -segments[i, 4] / segments[i, 5]
+        first = max(0, math.ceil((segments[0, i] - start) / step - _TIE))
+        last = min(len(row) - 1, math.floor((segments[2, i] - start) / step + _TIE))
+        climb = -segments[4, i] / segments[5, i]
         for k in range(first, last + 1):
-            row[k] = max(row[k], segments[i, 1] + climb * (start + step * k - segments[i, 0]))
+            row[k] = max(row[k], segments[1, i] + climb * (start + step * k - segments[0, i]))
+
+
+@njit(cache=True, nogil=True)
+def _most_pieces(segment_begins: NDArray[np.int64], corner_begins: NDArray[np.int64]) -> int:
+    """Most segments or corners of a section."""
+    most = 0
+    for k in range(len(segment_begins) - 1):
+        most = max(most, segment_begins[k + 1] - segment_begins[k], corner_begins[k + 1] - corner_begins[k])
+    return most
 
 
 @njit(cache=True, nogil=True)
@@ -303,7 +349,7 @@ def _raise_ends(
         share = (at - positions[k - 1]) / gap
         for j in range(2):
             m = k - 1 + j
-            _profile_row(segments[segment_begins[m] : segment_begins[m + 1]], start, step, two[j])
+            _profile_row(segments, segment_begins[m], segment_begins[m + 1], start, step, two[j])
         for i in range(len(heights)):
             if two[0, i] > -math.inf and abs(two[1, i] - two[0, i]) <= _CLIFF * gap:
                 heights[i] = max(heights[i], two[0, i] + share * (two[1, i] - two[0, i]))
@@ -328,7 +374,8 @@ def envelope(
     """Heights of the tool's lowest point over a part.
 
     Args:
-        segments, corners, segment_begins, corner_begins: from `profile_pieces`.
+        segments, corners: from `profile_pieces`, transposed: one row a column of it.
+        segment_begins, corner_begins: from `profile_pieces`.
         positions: shape (m,), where the sections lie, increasing.
         planes: shape (p,), where the tool's axis runs.
         disc, corner: radius of the tool's bottom and of its corner arc.
@@ -344,14 +391,16 @@ def envelope(
         most = max(most, last - first)
     rows, two = np.empty((most, heights.shape[1])), np.empty((2, heights.shape[1]))
     place, slope = np.empty(_TABLE), np.empty(_TABLE)
+    work = np.empty((4, _most_pieces(segment_begins, corner_begins)))
     for p in range(len(planes)):
         first, last = _reach(positions, planes[p], radius)
         near = rows[: last - first]
         near[:] = -math.inf
         for k in range(first, last):
             _section_row(
-                segments[segment_begins[k] : segment_begins[k + 1]],
-                corners[corner_begins[k] : corner_begins[k + 1]],
+                segments,
+                corners,
+                (segment_begins[k], segment_begins[k + 1], corner_begins[k], corner_begins[k + 1]),
                 (planes[p] - positions[k]) ** 2,
                 disc,
                 corner,
@@ -359,6 +408,7 @@ def envelope(
                 step,
                 place,
                 slope,
+                work,
                 near[k - first],
             )
         _highest(positions[first:last], near, smooth, heights[p], best[p])
@@ -398,6 +448,7 @@ def refine(
     best = np.empty(n, dtype=np.int64)
     beside = _ASKED // 2
     place, slope = np.empty(_TABLE), np.empty(_TABLE)
+    work = np.empty((4, _most_pieces(segment_begins, corner_begins)))
     for c in range(len(cells)):
         heights[c] = -math.inf
         begin, end = _reach(positions, cells[c, 0], radius)
@@ -412,8 +463,9 @@ def refine(
             near[:] = -math.inf
             for k in range(first, last):
                 _section_row(
-                    segments[segment_begins[k] : segment_begins[k + 1]],
-                    corners[corner_begins[k] : corner_begins[k + 1]],
+                    segments,
+                    corners,
+                    (segment_begins[k], segment_begins[k + 1], corner_begins[k], corner_begins[k + 1]),
                     (cells[c, 0] - positions[k]) ** 2,
                     disc,
                     corner,
@@ -421,6 +473,7 @@ def refine(
                     step,
                     place,
                     slope,
+                    work,
                     near[k - first],
                 )
             _highest(positions[first : max(first, last)], near, smooth, here, best)

@@ -67,7 +67,7 @@ class Profiles:
     Attributes:
         axis: 0 for sections normal to x (lines along y), 1 for sections normal to y (lines along x).
         positions_mm: shape (m,), increasing.
-        segments, segment_begins, corners, corner_begins: see `twin.cam.tip_line_kernels.profile_pieces`.
+        segments, segment_begins, corners, corner_begins: see `twin.cam.tip_line_kernels.envelope`.
         low_mm, high_mm: range along the lines that the sections fill.
         floor_mm: lowest point of the sections.
     """
@@ -107,9 +107,9 @@ class Profiles:
         return cls(
             axis=sections.axis,
             positions_mm=sections.positions_mm,
-            segments=segments[: segment_begins[-1]].copy(),
+            segments=np.ascontiguousarray(segments[: segment_begins[-1]].T),
             segment_begins=segment_begins,
-            corners=corners[: corner_begins[-1]].copy(),
+            corners=np.ascontiguousarray(corners[: corner_begins[-1]].T),
             corner_begins=corner_begins,
             low_mm=low,
             high_mm=high,
