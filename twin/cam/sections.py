@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.region import Region
 from twin.geometry.slicing import mesh_sections
+from twin.geometry.threads import run_all
 from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
 from twin.workpiece.stock import SliceSet
 from twin.workpiece.store import PLANE_AXES
@@ -84,8 +86,9 @@ def slice_part(part: Path | str | Solid, pitch_mm: float) -> SlicedPart:
     """
     mesh = part if isinstance(part, Solid) else load_mesh(part)
     slices = mesh_slices(mesh, pitch_mm)
-    x, y, z = (face_sections(mesh, axis) for axis in range(3))
-    return SlicedPart(mesh=mesh, slices=slices, faces=(x, y, z))
+    faces: dict[int, Sections] = {}
+    run_all([partial(lambda axis: faces.update({axis: face_sections(mesh, axis)}), axis) for axis in range(3)])
+    return SlicedPart(mesh=mesh, slices=slices, faces=(faces[0], faces[1], faces[2]))
 
 
 def face_sections(mesh: Solid, axis: int) -> Sections:
@@ -118,12 +121,22 @@ def _cut(mesh: Solid, axis: int, cuts_mm: FloatArray, positions_mm: FloatArray) 
 
 def face_levels(mesh: Solid, axis: int) -> tuple[FloatArray, FloatArray]:
     """Positions of faces across an axis: those with material above them, and those with material below."""
-    a, b, c = (mesh.vertices_mm[mesh.triangles[:, i]] for i in range(3))
+    level = _nearly_level(mesh, axis)
+    a, b, c = (mesh.vertices_mm[mesh.triangles[level, i]] for i in range(3))
     cross = np.cross(b - a, c - a)
     size = np.linalg.norm(cross, axis=1)
     flat = (np.abs(cross[:, axis]) >= _ACROSS * size) & (size > 0.0)
     heights, up = a[flat, axis], cross[flat, axis] > 0.0
     return np.unique(heights[~up]), np.unique(heights[up])
+
+
+def _nearly_level(mesh: Solid, axis: int) -> NDArray[np.int64]:
+    """Triangles that may lie across an axis; most are told by their heights, without their normals."""
+    heights = mesh.vertices_mm[:, axis]
+    a, b, c = (heights[mesh.triangles[:, i]] for i in range(3))
+    spread = np.maximum(np.maximum(a, b), c) - np.minimum(np.minimum(a, b), c)
+    size = float(np.linalg.norm(np.ptp(mesh.vertices_mm, axis=0)))
+    return np.flatnonzero(spread <= 2.0 * math.sqrt(1.0 - _ACROSS) * size)
 
 
 def edge_levels(mesh: Solid, axis: int) -> FloatArray:
@@ -135,8 +148,9 @@ def edge_levels(mesh: Solid, axis: int) -> FloatArray:
     level = np.flatnonzero(ends[:, 0] == ends[:, 1])
     number = np.full(len(ends), -1, dtype=np.int64)
     number[level] = np.arange(len(level))
-    triangles, sides = np.nonzero(number[mesh.edges.sides] >= 0)
-    own = number[mesh.edges.sides[triangles, sides]]
+    of_sides = number[mesh.edges.sides]
+    triangles, sides = np.divmod(np.flatnonzero(of_sides >= 0), 3)
+    own = of_sides[triangles, sides]
     normals = _normals(mesh, triangles)
     summed = np.stack([np.bincount(own, weights=normals[:, i], minlength=len(level)) for i in range(3)], axis=1)
     # two unit normals at an angle add up to 2 cos(angle / 2)

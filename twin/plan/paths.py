@@ -38,8 +38,7 @@ from twin.workpiece.from_mesh import Solid
 Report = Callable[[str, float], None]
 #: Chords of inflated sections stand this part of the pitch inside their arcs.
 _CHORD_PITCHES = 0.005
-#: Chords of rows stand no farther off the tip's true line; or this part of the allowance, or half the tool's sagitta
-#: over a pitch, of which the slices know little anyway.
+#: Chords of rows stand no farther off the tip's true line; or this part of the allowance.
 _CHORD_MM, _CHORD_ALLOWANCE = 0.0005, 0.05
 #: Planes that are inflated between two reports.
 _PLANES_TOGETHER = 32
@@ -147,8 +146,7 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
     profiles = Profiles.of(ground.part.sections(ACROSS[settings.direction]))
     places = Places.between(float(low[along]), float(high[along]), settings.pitch_mm)
     element = StructuringElement.tool(ground.tool)
-    sagitta = settings.pitch_mm**2 / (8.0 * ground.tool.max_radius_mm)
-    chord = max(_CHORD_MM, _CHORD_ALLOWANCE * settings.allowance_mm, 0.5 * sagitta)
+    chord = max(_CHORD_MM, _CHORD_ALLOWANCE * settings.allowance_mm)
     passes: list[Pass] = []
     for layer in reversed(range(settings.layers)):
         report("rows", 1.0 - (layer + 1) / settings.layers)
@@ -179,8 +177,8 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
 
 def _surface(mesh: Solid) -> Surface:
     """The part's surface; vertices that only triangles without area had are left out."""
-    used, places = np.unique(mesh.triangles, return_inverse=True)
-    return surface_of_mesh(mesh.vertices_mm[used], places.reshape(-1, 3))
+    used = mesh.used
+    return surface_of_mesh(mesh.vertices_mm[used], (np.cumsum(used) - 1)[mesh.triangles])
 
 
 def _approach(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from twin.arrays import FloatArray, frozen
 from twin.errors import MeshError
+from twin.geometry.region import Region
 from twin.geometry.slicing import MeshEdges, mesh_edges, mesh_sections, weld
+from twin.geometry.threads import run_all
 from twin.workpiece.solid_check import check_closed, check_orientation
 from twin.workpiece.stock import SliceSet, even_pitch, plane_counts, plane_positions
 from twin.workpiece.store import PLANE_AXES
@@ -38,6 +41,13 @@ class Solid:
     vertices_mm: FloatArray
     triangles: NDArray[np.int64]
     edges: MeshEdges
+
+    @property
+    def used(self) -> NDArray[np.bool_]:
+        """Vertices that triangles have; others were those of triangles without area. Shape (n,)."""
+        used = np.zeros(len(self.vertices_mm), dtype=np.bool_)
+        used[self.triangles.ravel()] = True
+        return used
 
     @property
     def volume_mm3(self) -> float:
@@ -83,12 +93,13 @@ def solid(corners_mm: ArrayLike, name: str) -> Solid:
     corners = np.asarray(corners_mm, dtype=np.float64)
     if corners.size == 0:
         raise MeshError(f"{name}: holds no triangles; expected a closed surface")
-    bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
-    if len(bad):
+    if not np.isfinite(corners).all():
+        bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
         raise MeshError(f"{name}: triangle {bad[0] + 1} of {len(corners)} has a corner that is no finite number")
     vertices, places = weld(corners.reshape(-1, 3))
     triangles = places.reshape(-1, 3)
-    whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    i, j, k = triangles.T
+    whole = (i != j) & (j != k) & (k != i)
     if not whole.any():
         raise MeshError(f"{name}: every one of its {len(corners)} triangles has no area; expected a closed surface")
     triangles = np.ascontiguousarray(triangles[whole])
@@ -108,13 +119,17 @@ def mesh_slices(mesh: Solid, pitch_mm: float) -> SliceSet:
     Raises:
         StockError: a mesh without extent, or a pitch that cannot be.
     """
-    used = mesh.vertices_mm[np.unique(mesh.triangles)]
+    used = mesh.vertices_mm[mesh.used]
     low, high = frozen(used.min(axis=0), "low_mm", (3,)), frozen(used.max(axis=0), "high_mm", (3,))
     pitch, counts = even_pitch(low, high, pitch_mm), plane_counts(low, high, pitch_mm)
-    families = []
-    for axis, (u, v) in enumerate(PLANE_AXES):
+    families: list[tuple[Region, ...]] = [(), (), ()]
+
+    def cut(axis: int) -> None:
+        axes = (axis, *PLANE_AXES[axis])
         planes = plane_positions(low, pitch, axis, counts[axis])
-        families.append(mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (axis, u, v), planes))
+        families[axis] = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, axes, planes)
+
+    run_all([partial(cut, axis) for axis in range(3)])
     return SliceSet(low_mm=low, high_mm=high, pitch_mm=pitch, regions=tuple(families))
 
 

@@ -47,7 +47,7 @@ def check_orientation(name: str, vertices_mm: FloatArray, triangles: NDArray[np.
     bodies = _bodies(len(vertices_mm), triangles)
     a, b, c = (vertices_mm[triangles[:, i]] - vertices_mm[triangles[0, 0]] for i in range(3))
     volumes = np.bincount(bodies, weights=np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0)
-    extent = float(np.prod(np.ptp(vertices_mm[triangles].reshape(-1, 3), axis=0)))
+    extent = float(np.prod(np.ptp(vertices_mm, axis=0)))
     if np.abs(volumes).max() <= 1e-12 * extent:
         raise MeshError(f"{name}: the surface encloses no volume; expected a solid")
     for body in np.flatnonzero(volumes < -1e-12 * extent):
