@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from support import solids
 
+from tests.support.recording import Recording
 from twin.cli import run
 from twin.workpiece.from_mesh import load_mesh
 
@@ -30,7 +31,10 @@ def test_a_table_of_tools_and_all_outputs(pocket: Path, capsys: pytest.CaptureFi
     assert "26 x 26 x 10 mm, 28 triangles, slices 0.25 mm apart" in text
     assert "flat 4: 4 regions" in text and "flat 16: 1 region" in text
     assert (folder / "a.png").read_bytes().startswith(b"\x89PNG")
-    assert (folder / "a.rrd").read_bytes().startswith(b"RRF2")
+    scene = Recording(folder / "a.rrd")
+    assert {"part", "leftover/flat_4", "leftover/flat_16", "thickest/flat_16"} <= set(scene.tables)
+    (report,) = scene.column("report", "TextDocument:text")
+    assert "| flat 16 | " in str(report) and "| 1 |" in str(report)
     whole = load_mesh(folder / "left" / "flat_16.stl")
     np.testing.assert_allclose(whole.vertices_mm.max(axis=0), (5.0, 5.0, 0.0), atol=1e-3)
     assert load_mesh(folder / "left" / "flat_4.stl").volume_mm3 == pytest.approx(

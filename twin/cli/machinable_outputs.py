@@ -14,10 +14,6 @@ if TYPE_CHECKING:
     from twin.cam.machinable import Reach
     from twin.cam.sections import SlicedPart
 
-_PART_COLOR = (150, 156, 164, 255)
-#: Colours of the tools' leftovers, in their order.
-_COLORS = ((226, 66, 40, 255), (240, 168, 40, 255), (60, 132, 226, 255), (58, 176, 92, 255), (166, 84, 196, 255))
-
 
 def check(rrd: Path | None, mesh: Path | None, plot: Path | None, tools: Sequence[str], *, force: bool) -> None:
     """Refuse outputs that could not be written, before long work.
@@ -67,7 +63,10 @@ def write(
     if mesh is not None:
         _write_meshes(reaches, mesh, force=force)
     if rrd is not None:
-        _write_recording(sliced, reaches, rrd, force=force)
+        from twin.cli.stills import reaches_still
+        from twin.sinks.rerun_still import write_still
+
+        write_still(rrd, reaches_still(reaches, sliced.mesh), force=force)
     if plot is not None:
         from twin.cli.machinable_plot import write_plot
 
@@ -84,30 +83,7 @@ def _write_meshes(reaches: dict[str, Reach], folder: Path, *, force: bool) -> No
             write_mesh(folder / _file_name(text), leftover_mesh(reach.leftovers, reach.pitch_mm), force=force)
 
 
-def _write_recording(sliced: SlicedPart, reaches: dict[str, Reach], path: Path, *, force: bool) -> None:
-    from twin.cam.leftover_mesh import leftover_mesh
-    from twin.sinks.rerun_solids import SolidView, write_solids
-
-    part = sliced.mesh
-    views = [SolidView(entity="part", vertices_mm=part.vertices_mm, triangles=part.triangles, color=_PART_COLOR)]
-    for number, (text, reach) in enumerate(reaches.items()):
-        if reach.leftovers:
-            made = leftover_mesh(reach.leftovers, reach.pitch_mm)
-            views.append(
-                SolidView(
-                    entity=f"leftover/{_slug(text)}",
-                    vertices_mm=made.vertices_mm,
-                    triangles=made.triangles,
-                    color=_COLORS[number % len(_COLORS)],
-                    text=f"{text}: {reach.volume_mm3:.4g} mm³ stay, {reach.thickness_mm:.3f} mm at most",
-                )
-            )
-    write_solids(path, f"{Path(part.name).name}: what tools cannot reach", views, force=force)
-
-
-def _slug(text: str) -> str:
-    return "_".join(text.split()).replace(".", "p")
-
-
 def _file_name(text: str) -> str:
-    return f"{_slug(text)}.stl"
+    from twin.cli.stills import entity_name
+
+    return f"{entity_name(text)}.stl"

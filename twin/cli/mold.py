@@ -120,12 +120,10 @@ def _plotted(chain: MoldChain, stages: tuple[Stage, ...], folder: Path) -> dict[
 
 
 def _recorded(chain: MoldChain, stages: tuple[Stage, ...], file: Path, *, force: bool) -> dict[str, Path]:
-    from twin.mold.pictures import lines_by_kind
-    from twin.sinks.rerun_paths import write_paths
+    from twin.cli.stills import paths_still
+    from twin.sinks.rerun_still import write_still
 
-    part = chain.part
-    paths = {str(s): lines_by_kind(chain.stage(s).path) for s in stages}
-    write_paths(file, part.vertices_mm, part.triangles, paths, force=force)
+    write_still(file, paths_still({str(s): chain.stage(s).path for s in stages}, chain.part), force=force)
     return {"recording": file}
 
 

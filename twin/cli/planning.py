@@ -128,11 +128,11 @@ def _draw(
 
         plot_path(nc_events([operation], options), files["picture"], title=made.path.name)
     if files["recording"] is not None:
-        from twin.cli.stills import path_still
+        from twin.cli.stills import paths_still
         from twin.sinks.rerun_still import write_still
 
         mesh = made.ground.part.mesh
-        write_still(files["recording"], path_still(made.path, mesh), force=force)
+        write_still(files["recording"], paths_still({"path": made.path}, mesh), force=force)
 
 
 def _say(made: Planned, lines: int, files: Mapping[str, Path | None], *, as_json: bool, quiet: bool) -> None:

@@ -25,7 +25,7 @@ _AT_MM = 1e-3
 _CHORD_MM = 0.02
 
 
-def lines_by_kind(path: ToolPath) -> dict[str, list[FloatArray]]:
+def _lines_by_kind(path: ToolPath) -> dict[str, list[FloatArray]]:
     """A path as polylines, by the kind of its moves."""
     lines: dict[str, list[FloatArray]] = {}
     for move in path.moves:
@@ -73,7 +73,7 @@ def draw_path(axes: Axes, path: ToolPath, low_z_mm: float = -np.inf, high_z_mm: 
     """A path from above, coloured by kind; between two heights only where they are given."""
     from matplotlib.collections import LineCollection
 
-    for kind, lines in lines_by_kind(path).items():
+    for kind, lines in _lines_by_kind(path).items():
         kept = [ln[:, :2] for ln in lines if low_z_mm <= ln[-1, 2] <= high_z_mm]
         if kept:
             colour = COLOURS.get(kind, _OTHER)

@@ -58,8 +58,11 @@ class Still:
     """A scene.
 
     Attributes:
+        name: the recording's name in the viewer.
         text: markdown beside it.
     """
+
+    name: str
 
     meshes: Sequence[StillMesh] = ()
     lines: Sequence[StillLines] = ()
@@ -80,6 +83,7 @@ def write_still(path: Path, still: Still, *, force: bool = False) -> None:
     recording = rr.RecordingStream(_APPLICATION)
     try:
         file.connect(recording)
+        recording.send_recording_name(still.name)
         recording.send_blueprint(_layout(still))
         recording.set_log_tick_enabled(False)
         recording.set_log_time_enabled(False)

@@ -8,9 +8,9 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
+from tests.support.recording import Recording
 from twin.cli import run
 from twin.errors import ToolPathError
 from twin.job import load_job
@@ -18,7 +18,6 @@ from twin.job.toml_text import toml_text
 from twin.mold import STAGES, MoldChain
 from twin.mold.pictures import draw
 from twin.mold.programs import write_programs
-from twin.sinks.rerun_paths import write_paths
 from twin.verify.deviation import Limits, deviation
 from twin.verify.machining import machined
 
@@ -73,13 +72,10 @@ def test_files_that_are_there_are_not_replaced(programs: dict[str, Path], chain:
     assert programs["rough"].read_bytes() == before
 
 
-def test_pictures_and_recording(chain: MoldChain, tmp_path: Path) -> None:
+def test_pictures(chain: MoldChain, tmp_path: Path) -> None:
     files = draw(chain, STAGES, tmp_path)
     assert [f.name for f in files] == ["small_rough.png", "small_semi.png", "small_finish.png"]
     assert all(f.stat().st_size > 10_000 for f in files)
-    file = tmp_path / "paths.rrd"
-    write_paths(file, chain.part.vertices_mm, chain.part.triangles, {"rough": {"cut": [np.zeros((2, 3))]}})
-    assert file.stat().st_size > 10_000
 
 
 def test_the_command_writes_one_stage_and_says_json(
@@ -104,6 +100,8 @@ def test_the_command_prints_the_table(
     file = mold_folder / "all.toml"
     file.write_text(toml_text(job_tables))
     assert run(["mold", str(file), "--plot", str(mold_folder / "pictures"), "--rrd", str(mold_folder / "x.rrd")]) == 0
+    scene = Recording(mold_folder / "x.rrd").tables
+    assert {"part", "report", *(f"{stage}/cut" for stage in STAGES)} <= set(scene)
     out = capsys.readouterr().out
     assert "Machining time, min" in out
     assert "less than the conventional chain" in out

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pytest
 from rerun.chunk import RrdReader
 
+from tests.support.recording import Recording
 from tests.support.slot_run import SlotRun, patch
 from twin.errors import ArchiveError, TwinError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, WorkpiecePatch
@@ -25,34 +26,6 @@ def write(path: Path, records: list[Record]) -> None:
     with RerunSink(rrd=path) as sink:
         for record in records:
             sink.write(record)
-
-
-class Recording:
-    """A recording read back, chunk by chunk, as tables."""
-
-    def __init__(self, path: Path) -> None:
-        self.tables: dict[str, list[pa.RecordBatch]] = {}
-        for chunk in RrdReader(path).stream().to_chunks():
-            self.tables.setdefault(chunk.entity_path.lstrip("/"), []).append(chunk.to_record_batch())
-
-    def column(self, entity: str, name: str) -> list[object]:
-        """Values of a column in the order of time; rows without it left out."""
-        rows: list[tuple[object, object]] = []
-        for table in self.tables[entity]:
-            if name in table.schema.names:
-                times = (
-                    table.column(layout.TIME).cast(pa.int64()).to_pylist()
-                    if layout.TIME in table.schema.names
-                    else [0] * len(table)
-                )
-                rows += [(t, v) for t, v in zip(times, table.column(name).to_pylist(), strict=True) if v is not None]
-        return [v for _, v in sorted(rows, key=lambda row: row[0])]
-
-    def timelines(self, entity: str) -> set[str]:
-        """Timelines of an entity's rows; empty for what holds at all times."""
-        return {
-            n for t in self.tables[entity] for n in t.schema.names if n in (*layout.TIMELINES, "log_time", "log_tick")
-        }
 
 
 @pytest.fixture(scope="module")
