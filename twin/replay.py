@@ -16,15 +16,11 @@ from typing import Self
 
 import numpy as np
 
-from gcode.dialects import dialect_named
 from gcode.events import Block, Event, ToolChange
-from gcode.interpret import interpret
-from gcode.program import read_program
 from twin.arrays import FloatArray
 from twin.cutting.engagement import Positions
 from twin.errors import CollisionError, ReplayError
 from twin.job import Job
-from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Move
 from twin.record import Collision, CollisionKind, ForceSamples, Record, RunSummary, Step
 from twin.run.clock import SpindleClock, Turned
@@ -33,6 +29,7 @@ from twin.run.header import run_header
 from twin.run.material import Material
 from twin.run.nc_events import nc_event
 from twin.run.preview import FRAMES, Preview
+from twin.run.program import checked_time_s, program_moves
 from twin.run.setup import ToolSetup, machine_settings, stock_slices, tool_setup, workpiece
 from twin.run.solve import IN_AIR, Solved, StepSolver, one_ahead
 from twin.run.totals import Totals
@@ -68,7 +65,7 @@ class Replay:
         slices = stock_slices(job)
         self._settings = machine_settings(job, slices)
         self._tools = {t.number: tool_setup(job, t, self._tolerance) for t in job.tools}
-        self.planned_time_s = math.fsum(self._checked_durations())
+        self.planned_time_s = checked_time_s(job, self._settings, self._tools)
         self.workpiece = workpiece(job, slices)
         self._material = Material(self.workpiece, self._tolerance, threads)
         self._solver = StepSolver(self.workpiece, threads)
@@ -87,43 +84,11 @@ class Replay:
         yield run_header(self.job, self.workpiece, [t.record for t in self._tools.values()], self.planned_time_s)
         if self._preview is not None:
             yield from self._preview.all_patches(0.0)
-        for item in self._program():
+        for item in program_moves(self.job, self._settings):
             yield from self._move(item) if isinstance(item, Move) else self._event(item)
         self._material.flush()
         yield from self._changed_patches()
         yield self.summary(complete=True)
-
-    def _program(self) -> Iterator[Move | Event]:
-        program = self.job.program
-        events = interpret(
-            read_program(program.file),
-            file=str(program.file),
-            dialect=dialect_named(program.dialect),
-            settings=self._settings,
-        )
-        return moves_from_nc(
-            events,
-            origin_mm=np.array(self.job.machine.offsets[self.job.stock.wcs]),
-            start_mm=self._settings.start_mm,
-            tool_length_mm={t.number: t.length_mm for t in self.job.tools},
-            rapid_mm_min=self.job.machine.rapid_mm_min,
-        )
-
-    def _checked_durations(self) -> Iterator[float]:
-        """How long the program's motions and tool changes take, with the tools they need checked."""
-        known = ", ".join(str(n) for n in sorted(self._tools))
-        for item in self._program():
-            if isinstance(item, ToolChange):
-                if item.tool not in self._tools and item.tool != 0:
-                    raise ReplayError(f"{item.place}: tool T{item.tool} is not in the job; expected one of {known}")
-                yield self.job.machine.tool_change_s
-            elif isinstance(item, Move):
-                if item.tool == 0 and not item.rapid and item.length_mm > 0.0:
-                    raise ReplayError(
-                        f"{self.job.program.file}:{item.nc_line}: feed motion without a tool in the spindle; "
-                        "expected a tool change (T.. M6) before it, or program.tool in the job"
-                    )
-                yield item.duration_s
 
     def _event(self, event: Event) -> Iterator[Record]:
         if isinstance(event, Block):
