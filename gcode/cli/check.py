@@ -8,49 +8,26 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gcode.cli import exit_codes
-from gcode.cli.machine import (
-    BlockDeleteOption,
-    DialectName,
-    DialectOption,
-    ParametersOption,
-    SearchPathOption,
-    SettingsOption,
-    ToolTableOption,
-    UnitOption,
-    setup_of,
-)
+from gcode.cli.machine import Setup, with_machine
 
 if TYPE_CHECKING:
     from gcode.cli.findings import Findings
 
 
+@with_machine
 def check(
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Programs.", show_default=False)],
-    dialect: DialectOption = DialectName.FANUC,
-    tool_table: ToolTableOption = None,
-    parameters: ParametersOption = None,
-    settings: SettingsOption = None,
-    machine_units: UnitOption = None,
-    block_delete: BlockDeleteOption = False,
-    search_path: SearchPathOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object a diagnostic and line.")] = False,
     notices: Annotated[
         bool, typer.Option("--notices", help="List words that are understood and have no effect on motion.")
     ] = False,
+    *,
+    setup: Setup,
 ) -> None:
     """Find the mistakes of programs: as many as one run can tell, each with its place."""
     from gcode.cli.findings import findings
     from gcode.cli.say import fail, written
 
-    setup = setup_of(
-        dialect=dialect,
-        settings=settings,
-        tool_table=tool_table,
-        parameters=parameters,
-        machine_units=machine_units,
-        block_delete=block_delete,
-        search_path=search_path,
-    )
     codes = {exit_codes.OK}
     with written():
         for file in files:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
@@ -88,15 +90,35 @@ class Setup:
     settings: MachineSettings
 
 
+def with_machine(command: Callable[..., None]) -> Callable[..., None]:
+    """A command whose parameter ``setup`` is told by the options that all commands share, those of `setup_of`.
+
+    Typer reads options off a command's signature: there they take the place of ``setup``.
+    """
+    shared = inspect.signature(setup_of, eval_str=True).parameters
+    own = inspect.signature(command, eval_str=True).parameters
+
+    @wraps(command)
+    def with_options(**values: Any) -> None:
+        setup = setup_of(**{name: values.pop(name) for name in shared})
+        command(**values, setup=setup)
+
+    options = {name: p for name, p in (own | shared).items() if name != "setup"}
+    keyword_only = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in options.values()]
+    with_options.__signature__ = inspect.Signature(keyword_only)  # type: ignore[attr-defined]
+    with_options.__annotations__ = {name: p.annotation for name, p in options.items()}
+    return with_options
+
+
 def setup_of(
     *,
-    dialect: DialectName,
-    settings: Path | None,
-    tool_table: Path | None,
-    parameters: Path | None,
-    machine_units: MachineUnit | None,
-    block_delete: bool,
-    search_path: list[Path] | None,
+    dialect: DialectOption = DialectName.FANUC,
+    tool_table: ToolTableOption = None,
+    parameters: ParametersOption = None,
+    settings: SettingsOption = None,
+    machine_units: UnitOption = None,
+    block_delete: BlockDeleteOption = False,
+    search_path: SearchPathOption = None,
 ) -> Setup:
     """Dialect and settings for the options' values; what is in the other files takes the place of the settings file's.
 

@@ -2,29 +2,14 @@
 
 from __future__ import annotations
 
-from gcode.cli.machine import (
-    BlockDeleteOption,
-    DialectName,
-    DialectOption,
-    ParametersOption,
-    ProgramFile,
-    SearchPathOption,
-    SettingsOption,
-    ToolTableOption,
-    UnitOption,
-    setup_of,
-)
+from gcode.cli.machine import ProgramFile, Setup, with_machine
 
 
+@with_machine
 def motions(
     file: ProgramFile,
-    dialect: DialectOption = DialectName.FANUC,
-    tool_table: ToolTableOption = None,
-    parameters: ParametersOption = None,
-    settings: SettingsOption = None,
-    machine_units: UnitOption = None,
-    block_delete: BlockDeleteOption = False,
-    search_path: SearchPathOption = None,
+    *,
+    setup: Setup,
 ) -> None:
     """Print every motion and dwell of a program as one JSON object a line.
 
@@ -38,15 +23,6 @@ def motions(
     from gcode.interpret import interpret_file
     from gcode.motion_json import motion_objects
 
-    setup = setup_of(
-        dialect=dialect,
-        settings=settings,
-        tool_table=tool_table,
-        parameters=parameters,
-        machine_units=machine_units,
-        block_delete=block_delete,
-        search_path=search_path,
-    )
     encode = json.JSONEncoder(allow_nan=False).encode
     with written():
         events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)

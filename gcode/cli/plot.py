@@ -8,18 +8,7 @@ from typing import Annotated
 
 import typer
 
-from gcode.cli.machine import (
-    BlockDeleteOption,
-    DialectName,
-    DialectOption,
-    ParametersOption,
-    ProgramFile,
-    SearchPathOption,
-    SettingsOption,
-    ToolTableOption,
-    UnitOption,
-    setup_of,
-)
+from gcode.cli.machine import ProgramFile, Setup, with_machine
 
 
 class View(StrEnum):
@@ -38,6 +27,7 @@ class ColourBy(StrEnum):
     TOOL = "tool"
 
 
+@with_machine
 def plot(
     file: ProgramFile,
     out: Annotated[
@@ -46,28 +36,14 @@ def plot(
     view: Annotated[View, typer.Option(help="From where the path is seen.")] = View.ISO,
     colour: Annotated[ColourBy, typer.Option(help="What the colours of feeds tell.")] = ColourBy.Z,
     tolerance_mm: Annotated[float, typer.Option(min=1e-6, help="How far chords may lie off arcs, mm.")] = 0.01,
-    dialect: DialectOption = DialectName.FANUC,
-    tool_table: ToolTableOption = None,
-    parameters: ParametersOption = None,
-    settings: SettingsOption = None,
-    machine_units: UnitOption = None,
-    block_delete: BlockDeleteOption = False,
-    search_path: SearchPathOption = None,
+    *,
+    setup: Setup,
 ) -> None:
     """Draw the path of a program: rapids dashed, feeds coloured, the same scale along all axes."""
     from gcode.cli.say import UnusableFileError, with_progress
     from gcode.interpret import interpret_file
     from gcode.plot import PlotError, check_picture, plot_path
 
-    setup = setup_of(
-        dialect=dialect,
-        settings=settings,
-        tool_table=tool_table,
-        parameters=parameters,
-        machine_units=machine_units,
-        block_delete=block_delete,
-        search_path=search_path,
-    )
     try:
         check_picture(out)
         events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)

@@ -8,19 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gcode.cli.machine import (
-    BlockDeleteOption,
-    DialectName,
-    DialectOption,
-    MachineUnit,
-    ParametersOption,
-    ProgramFile,
-    SearchPathOption,
-    SettingsOption,
-    ToolTableOption,
-    UnitOption,
-    setup_of,
-)
+from gcode.cli.machine import DialectName, MachineUnit, ProgramFile, Setup, with_machine
 
 if TYPE_CHECKING:
     from gcode.events import Point
@@ -41,6 +29,7 @@ class Arcs(StrEnum):
     RADIUS = "radius"
 
 
+@with_machine
 def rewrite(
     file: ProgramFile,
     out: Annotated[
@@ -63,13 +52,8 @@ def rewrite(
         int | None, typer.Option(min=1, help="O number, for FANUC and Haas.", show_default=False)
     ] = None,
     wcs: Annotated[str, typer.Option(help="Work offset that the coordinates are in.")] = "G54",
-    dialect: DialectOption = DialectName.FANUC,
-    tool_table: ToolTableOption = None,
-    parameters: ParametersOption = None,
-    settings: SettingsOption = None,
-    machine_units: UnitOption = None,
-    block_delete: BlockDeleteOption = False,
-    search_path: SearchPathOption = None,
+    *,
+    setup: Setup,
 ) -> None:
     """Write a program anew: the same motions for another control, in other units, or without macros and cycles.
 
@@ -81,18 +65,9 @@ def rewrite(
     from gcode.interpret import interpret_file
     from gcode.write import WriteOptions, write_file
 
-    setup = setup_of(
-        dialect=dialect,
-        settings=settings,
-        tool_table=tool_table,
-        parameters=parameters,
-        machine_units=machine_units,
-        block_delete=block_delete,
-        search_path=search_path,
-    )
     try:
         options = WriteOptions(
-            dialect=dialect_named((to or dialect).value),
+            dialect=setup.dialect if to is None else dialect_named(to.value),
             units=units.value,
             distance=distance.value,
             arcs=arcs.value,

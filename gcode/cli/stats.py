@@ -6,18 +6,7 @@ from typing import Annotated
 
 import typer
 
-from gcode.cli.machine import (
-    BlockDeleteOption,
-    DialectName,
-    DialectOption,
-    ParametersOption,
-    ProgramFile,
-    SearchPathOption,
-    SettingsOption,
-    ToolTableOption,
-    UnitOption,
-    setup_of,
-)
+from gcode.cli.machine import ProgramFile, Setup, with_machine
 
 
 def _rate(value: float) -> float:
@@ -26,19 +15,15 @@ def _rate(value: float) -> float:
     return value
 
 
+@with_machine
 def stats(
     file: ProgramFile,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     rapid_mm_min: Annotated[
         float, typer.Option("--rapid-mm-min", callback=_rate, help="Speed of rapids along the path, mm/min.")
     ] = 10_000.0,
-    dialect: DialectOption = DialectName.FANUC,
-    tool_table: ToolTableOption = None,
-    parameters: ParametersOption = None,
-    settings: SettingsOption = None,
-    machine_units: UnitOption = None,
-    block_delete: BlockDeleteOption = False,
-    search_path: SearchPathOption = None,
+    *,
+    setup: Setup,
 ) -> None:
     """Sum up a program: lengths, times, the space it needs, feeds and speeds of each tool.
 
@@ -48,15 +33,6 @@ def stats(
     from gcode.interpret import interpret_file
     from gcode.stats import program_stats
 
-    setup = setup_of(
-        dialect=dialect,
-        settings=settings,
-        tool_table=tool_table,
-        parameters=parameters,
-        machine_units=machine_units,
-        block_delete=block_delete,
-        search_path=search_path,
-    )
     events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
     found = program_stats(with_progress(events, file.name), rapid_mm_min)
     with written():

@@ -4,19 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from gcode.cli.words import clock, grouped, plural
 
-def clock(seconds: float) -> str:
-    """A time as ``1:02.3`` (minutes), or ``2:01:02`` from an hour on."""
-    tenths = round(seconds * 10.0)
-    if tenths < 36000:
-        return f"{tenths // 600}:{tenths % 600 // 10:02d}.{tenths % 10}"
-    whole = round(seconds)
-    return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"
-
-
-def grouped(value: float, decimals: int = 0) -> str:
-    """A number with its thousands set apart: ``12 345``."""
-    return f"{value:,.{decimals}f}".replace(",", " ")
+__all__ = ["clock", "column", "digits", "grouped", "plural", "size", "volume"]
 
 
 def digits(value: float) -> str:
@@ -48,8 +38,3 @@ def size(count: float) -> str:
             return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"
         count /= 1000.0
     return f"{count:.1f} GB"
-
-
-def plural(count: int, word: str) -> str:
-    """``1 collision``, ``2 collisions``."""
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
