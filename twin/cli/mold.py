@@ -45,13 +45,13 @@ def mold(
     Every stage starts from what the one before leaves, so those before are computed for --stage as well.
     """
     from twin.cli.console import warn
-    from twin.cli.mold_progress import mold_progress
+    from twin.cli.progress import working
     from twin.mold import STAGES, MoldChain, load_mold
     from twin.mold.programs import check_paths, program_paths, write_programs
 
     job = load_mold(job_file)
     stages: tuple[Stage, ...] = STAGES if stage is None else (stage.value,)
-    with mold_progress(quiet=quiet or as_json) as report:
+    with working(quiet=quiet or as_json, even=True) as report:
         chain = MoldChain(job, report)
         wanted = [*program_paths(chain, stages).values(), *([rrd] if rrd is not None else [])]
         check_paths(wanted, force=force)

@@ -101,8 +101,12 @@ class LineProgress:
 
 
 @contextmanager
-def working(*, quiet: bool) -> Iterator[Callable[[str, float], None]]:
-    """A bar for work in stages; gives what to tell a stage's name and share done. Draws where `progress` does."""
+def working(*, quiet: bool, even: bool = False) -> Iterator[Callable[[str, float], None]]:
+    """A bar for work in stages; gives what to tell a stage's name and share done. Draws where `progress` does.
+
+    Args:
+        even: shares are those of the whole time, so that the time left can be told.
+    """
     if quiet or not sys.stderr.isatty():
         yield lambda _what, _share: None
         return
@@ -112,7 +116,7 @@ def working(*, quiet: bool) -> Iterator[Callable[[str, float], None]]:
         rich.TextColumn("{task.description}", style="bold"),
         rich.BarColumn(bar_width=28),
         rich.TaskProgressColumn(),
-        rich.TimeElapsedColumn(),
+        *((rich.TimeRemainingColumn(compact=True), rich.TextColumn("left")) if even else (rich.TimeElapsedColumn(),)),
         console=errors(),
         transient=True,
     )
