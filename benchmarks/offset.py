@@ -2,8 +2,8 @@
 
     python -m benchmarks.offset [--pitches 0.25,0.125,0.05] [--quick]
 
-The part of examples/torus (99,342 triangles, 60 x 60 mm), an R4 ball. Paths are those of the tri-slice paper's Table 1:
-roughing in rows 2 mm apart, 5 layers of 2 mm, 0.10 mm left; finishing in rows 0.25 mm apart. Errors are those of the
+The part of examples/torus (164,878 triangles, 60 x 60 mm), an R4 ball. Paths are those of the tri-slice paper's Table
+1: roughing in rows 2 mm apart, 5 layers of 2 mm, 0.10 mm left; finishing in rows 0.25 mm apart. Errors are those of the
 finishing path's points against the exact drop-cutter on the same triangles. The others: trimesh's sections,
 opencamlib's drop-cutter (on some of the points), and a height map dilated by the ball, with heights of slices at the
 same places and no larger error beside it.

@@ -79,8 +79,8 @@ def meridian(steps: int, profile: Profile = PROFILE) -> NDArray[np.float64]:
     return curve
 
 
-def torus(around: int = 512, along: int = 96, profile: Profile = PROFILE) -> NDArray[np.float64]:
-    """The part's triangles; 2 around (along + 1) + 14 of them, 99,342 with the defaults.
+def torus(around: int = 512, along: int = 160, profile: Profile = PROFILE) -> NDArray[np.float64]:
+    """The part's triangles; 2 around (along + 1) + 14 of them, 164,878 with the defaults.
 
     Args:
         around: segments about the axis, a multiple of 4.

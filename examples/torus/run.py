@@ -57,7 +57,7 @@ class Fineness:
 
 FULL = Fineness(
     around=512,
-    along=96,
+    along=160,
     pitch=0.05,
     rough_step=2.0,
     rough_layers=5,

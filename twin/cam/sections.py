@@ -93,7 +93,9 @@ def slice_part(part: Path | str | Solid, pitch_mm: float) -> SlicedPart:
 
 def face_sections(mesh: Solid, axis: int) -> Sections:
     """Sections at the faces that lie across an axis, cut just inside the material, and on both sides of sharp edges."""
-    faces, edges = _beside_faces(mesh, axis, _INSIDE_MM), edge_levels(mesh, axis)
+    low, high = face_levels(mesh, axis)
+    faces = _beside_faces(mesh, axis, low, high, _INSIDE_MM)
+    edges = np.setdiff1d(edge_levels(mesh, axis), np.concatenate((low, high)))
     if len(edges) == 0:
         return faces
     cuts = np.sort(np.concatenate((edges - _INSIDE_MM, edges + _INSIDE_MM)))
@@ -102,11 +104,10 @@ def face_sections(mesh: Solid, axis: int) -> Sections:
 
 def outside_sections(mesh: Solid, axis: int) -> Sections:
     """Sections at the same faces, cut just outside the material."""
-    return _beside_faces(mesh, axis, -_INSIDE_MM)
+    return _beside_faces(mesh, axis, *face_levels(mesh, axis), -_INSIDE_MM)
 
 
-def _beside_faces(mesh: Solid, axis: int, inwards_mm: float) -> Sections:
-    low, high = face_levels(mesh, axis)
+def _beside_faces(mesh: Solid, axis: int, low: FloatArray, high: FloatArray, inwards_mm: float) -> Sections:
     cuts = np.concatenate((low + inwards_mm, high - inwards_mm))
     order = np.argsort(cuts, kind="stable")
     return _cut(mesh, axis, cuts[order], np.concatenate((low, high))[order])
@@ -135,12 +136,12 @@ def _nearly_level(mesh: Solid, axis: int) -> NDArray[np.int64]:
     heights = mesh.vertices_mm[:, axis]
     a, b, c = (heights[mesh.triangles[:, i]] for i in range(3))
     spread = np.maximum(np.maximum(a, b), c) - np.minimum(np.minimum(a, b), c)
-    size = float(np.linalg.norm(np.ptp(mesh.vertices_mm, axis=0)))
+    size = float(np.linalg.norm(np.diff(mesh.box_mm, axis=0)))
     return np.flatnonzero(spread <= 2.0 * math.sqrt(1.0 - _ACROSS) * size)
 
 
 def edge_levels(mesh: Solid, axis: int) -> FloatArray:
-    """Positions of sharp edges that lie across an axis, but for those of faces that do: ridges, rims of cones.
+    """Positions of sharp edges that lie across an axis: ridges, rims of cones, borders of faces that lie across it.
 
     Even slices miss the top of such an edge by up to half a pitch times the slope beside it.
     """
@@ -155,8 +156,7 @@ def edge_levels(mesh: Solid, axis: int) -> FloatArray:
     summed = np.stack([np.bincount(own, weights=normals[:, i], minlength=len(level)) for i in range(3)], axis=1)
     # two unit normals at an angle add up to 2 cos(angle / 2)
     sharp = np.linalg.norm(summed, axis=1) < 2.0 * math.cos(0.5 * _SHARP_RAD)
-    positions: FloatArray = np.unique(ends[level[sharp], 0])
-    return np.setdiff1d(positions, np.concatenate(face_levels(mesh, axis)))
+    return np.asarray(np.unique(ends[level[sharp], 0]))
 
 
 def _normals(mesh: Solid, triangles: NDArray[np.int64]) -> FloatArray:

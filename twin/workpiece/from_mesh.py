@@ -50,6 +50,12 @@ class Solid:
         return used
 
     @property
+    def box_mm(self) -> FloatArray:
+        """Low and high corner of the triangles' box, shape (2, 3)."""
+        columns = self.vertices_mm[self.used].T
+        return np.array([[c.min() for c in columns], [c.max() for c in columns]])
+
+    @property
     def volume_mm3(self) -> float:
         """Volume inside the triangles; where bodies overlap it counts twice."""
         a, b, c = (self.vertices_mm[self.triangles[:, i]] - self.vertices_mm[0] for i in range(3))
@@ -119,8 +125,8 @@ def mesh_slices(mesh: Solid, pitch_mm: float) -> SliceSet:
     Raises:
         StockError: a mesh without extent, or a pitch that cannot be.
     """
-    used = mesh.vertices_mm[mesh.used]
-    low, high = frozen(used.min(axis=0), "low_mm", (3,)), frozen(used.max(axis=0), "high_mm", (3,))
+    box = mesh.box_mm
+    low, high = frozen(box[0], "low_mm", (3,)), frozen(box[1], "high_mm", (3,))
     pitch, counts = even_pitch(low, high, pitch_mm), plane_counts(low, high, pitch_mm)
     families: list[tuple[Region, ...]] = [(), (), ()]
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
@@ -47,7 +49,7 @@ def check_orientation(name: str, vertices_mm: FloatArray, triangles: NDArray[np.
     bodies = _bodies(len(vertices_mm), triangles)
     a, b, c = (vertices_mm[triangles[:, i]] - vertices_mm[triangles[0, 0]] for i in range(3))
     volumes = np.bincount(bodies, weights=np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0)
-    extent = float(np.prod(np.ptp(vertices_mm, axis=0)))
+    extent = math.prod(float(np.ptp(column)) for column in vertices_mm.T)
     if np.abs(volumes).max() <= 1e-12 * extent:
         raise MeshError(f"{name}: the surface encloses no volume; expected a solid")
     for body in np.flatnonzero(volumes < -1e-12 * extent):
