@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from gcode.events import Event, Point
+from gcode.events import Event, MotionState, Point
 from gcode.write.errors import WriteError
 from gcode.write.numbers import Counts, Grid
 from gcode.write.options import WriteOptions
@@ -41,6 +41,7 @@ class Control:
         mist: coolant.
         flood: coolant.
         length: length offset.
+        state: the last motion's, where all that it holds has been said; None behind an event that changes that.
         unsure: True where the machine may stand elsewhere, so that the next motion names all axes in G90.
         ended: the program's end has been written.
     """
@@ -56,6 +57,7 @@ class Control:
     mist: bool = False
     flood: bool = False
     length: LengthOffset = LengthOffset()
+    state: MotionState | None = None
     unsure: bool = True
     ended: bool = False
     _number: int = 0

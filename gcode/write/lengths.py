@@ -38,6 +38,17 @@ def set_length(control: Control, event: Motion) -> tuple[list[str], list[str]]:
     return (words, []) if words[0] == "G43.1" else ([], words)
 
 
+def check_gap(control: Control, event: Motion) -> None:
+    """Checks that a motion with the offset of the last one begins where that ended.
+
+    Raises:
+        WriteError: for a gap between them.
+    """
+    if control.at_mm is None or control.at_mm == event.start_mm:
+        return
+    _check_gap(control, event, control.length, control.length)
+
+
 def _check_gap(control: Control, event: Motion, old: LengthOffset, new: LengthOffset) -> None:
     if control.at_mm is None:
         return

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from gcode.events import NO_EXTRA, PLANE_AXES, ArcMotion, LinearMotion, Motion
 from gcode.write.control import Control, Stream
-from gcode.write.lengths import set_length
+from gcode.write.lengths import check_gap, set_length
 from gcode.write.machine import ready
 from gcode.write.numbers import Counts, plain
 from gcode.write.strokes import Circle, Line, Stroke, arc_strokes
@@ -26,11 +26,18 @@ def motion(control: Control, event: Motion, stream: Stream) -> Iterator[str]:
         WriteError: for one that cannot be said, or that does not begin where the last one ended.
     """
     _check(control, event)
-    yield from ready(control, event, event.state)
-    own, beside = set_length(control, event)
+    own: list[str] = []
+    beside: list[str] = []
+    if event.state is control.state:
+        check_gap(control, event)
+    else:
+        yield from ready(control, event, event.state)
+        own, beside = set_length(control, event)
+        control.state = event.state
     if control.at is None:
         control.at = control.grid.point(event.start_mm)
     if isinstance(event, LinearMotion) and event.tapping:
+        control.state = None  # the cycle turns the spindle both ways
         yield from (control.line(*words) for words in (own, beside) if words)
         yield from tap_blocks(control, event, tap_of(control, event, stream), feed_word(control, event))
         return

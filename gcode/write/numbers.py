@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeAlias
 
 from gcode.events import Point
@@ -57,6 +58,7 @@ def fixed(count: int, decimals: int) -> str:
     return f"{'-' if count < 0 else ''}{whole}.{digits}"
 
 
+@lru_cache(maxsize=64)  # feeds and speeds are the same on most lines
 def plain(value: float, decimals: int) -> str:
     """A number with so many decimals at most, without a point where it is whole: ``1200``, ``0.25``."""
     return fixed(round(value * 10.0**decimals), decimals).rstrip(".")

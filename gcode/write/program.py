@@ -103,9 +103,11 @@ def _ending(control: Control) -> Iterator[str]:
 def _blocks(control: Control, event: Event, stream: Stream) -> Iterator[str]:
     if control.ended and not isinstance(event, Block | Notice):
         raise control.error(event, "after-end", "an event behind the program's end", "the end as the last event")
+    if isinstance(event, LinearMotion | ArcMotion):
+        return motion(control, event, stream)
+    if not isinstance(event, Block | Notice):
+        control.state = None
     match event:
-        case LinearMotion() | ArcMotion():
-            return motion(control, event, stream)
         case ToolChange():
             return tool_change(control, event)
         case SpindleChange():
