@@ -7,9 +7,9 @@ import re
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
 from numpy.typing import ArrayLike, NDArray
 
 from twin.arrays import FloatArray, frozen
@@ -20,6 +20,9 @@ from twin.geometry.threads import run_all
 from twin.workpiece.solid_check import check_closed, check_orientation
 from twin.workpiece.stock import SliceSet, even_pitch, plane_counts, plane_positions
 from twin.workpiece.store import PLANE_AXES
+
+if TYPE_CHECKING:
+    from trimesh import Trimesh
 
 _BINARY_HEADER = 84
 _BINARY_TRIANGLE = 50
@@ -141,18 +144,24 @@ def mesh_slices(mesh: Solid, pitch_mm: float) -> SliceSet:
 
 def stl_bytes(vertices_mm: ArrayLike, triangles: ArrayLike) -> bytes:
     """A mesh as binary STL, as float32 mm."""
-    return bytes(trimesh.exchange.stl.export_stl(_trimesh(vertices_mm, triangles)))
+    from trimesh.exchange.stl import export_stl
+
+    return bytes(export_stl(_trimesh(vertices_mm, triangles)))
 
 
 def threemf_bytes(vertices_mm: ArrayLike, triangles: ArrayLike) -> bytes:
     """A mesh as 3MF, in mm."""
+    from trimesh.exchange.threemf import export_3MF
+
     mesh = _trimesh(vertices_mm, triangles)
     mesh.units = "millimeter"
-    data: bytes = trimesh.exchange.threemf.export_3MF(mesh)  # type: ignore[no-untyped-call]
+    data: bytes = export_3MF(mesh)  # type: ignore[no-untyped-call]
     return data
 
 
-def _trimesh(vertices_mm: ArrayLike, triangles: ArrayLike) -> trimesh.Trimesh:
+def _trimesh(vertices_mm: ArrayLike, triangles: ArrayLike) -> Trimesh:
+    import trimesh  # takes as long to load as all else of a replay, which seldom needs it
+
     return trimesh.Trimesh(np.asarray(vertices_mm), np.asarray(triangles), process=False)
 
 
@@ -177,6 +186,8 @@ def _stl_corners(name: str, data: bytes) -> FloatArray:
 
 def _ascii_corners(name: str, data: bytes) -> FloatArray:
     """The same of a text file."""
+    import trimesh
+
     try:
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="stl", process=False)
         corners: FloatArray = np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)]
