@@ -40,6 +40,9 @@ Report = Callable[[str, float], None]
 _CHORD_PITCHES = 0.005
 #: Chords of rows stand no farther off the tip's true line; or this part of the allowance.
 _CHORD_MM, _CHORD_ALLOWANCE = 0.0005, 0.05
+#: Places that rows begin with are a slice pitch apart; no closer than this part of the radius of ball or corner arc,
+#: for the tool's own round hides what is finer, and places are added where chords would not do.
+_PLACES_APART = 0.0125
 #: Planes that are inflated between two reports.
 _PLANES_TOGETHER = 32
 #: What a contour's overhang lacks to the tool's radius, and a few chords: flush sides of the stock are left alone.
@@ -144,7 +147,8 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
     at = row_positions(float(low[across]), float(high[across]), settings.stepover_mm)
     report("profiles", 0.0)
     profiles = Profiles.of(ground.part.sections(ACROSS[settings.direction]))
-    places = Places.between(float(low[along]), float(high[along]), settings.pitch_mm)
+    apart = max(settings.pitch_mm, _PLACES_APART * ground.tool.corner_mm)
+    places = Places.between(float(low[along]), float(high[along]), apart)
     element = StructuringElement.tool(ground.tool)
     chord = max(_CHORD_MM, _CHORD_ALLOWANCE * settings.allowance_mm)
     passes: list[Pass] = []
