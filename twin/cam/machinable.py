@@ -7,21 +7,16 @@ side; with a tool about its tip it comes from above, and what lies below an over
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-
-import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cam.element import StructuringElement
 from twin.cam.leftover import Leftover, leftovers
 from twin.cam.offset import CHORD_PITCHES, away, frame_boxes, towards
-from twin.cam.sections import Sections, SlicedPart, face_levels
-from twin.geometry.convolution import arc_segments, convolved
+from twin.cam.sections import Sections, SlicedPart
+from twin.cam.tool_places import even_places, tool_places
+from twin.geometry.convolution import Convolution, arc_segments
 from twin.geometry.shapes import Shapes, boundaries, minus, to_shapes
-
-#: How far above a face a tool that stands on it is taken to be, mm: far above rounding, far below any tolerance.
-_ON_MM = 1e-5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -99,27 +94,11 @@ def _closed(
     part: SlicedPart, sections: Sections, planes: FloatArray, element: StructuringElement, threads: int | None
 ) -> Shapes:
     """Sections of what stays: everything that no position of the tool reaches, within the part's box."""
-    radius, pitch = element.radius_mm, float(part.slices.pitch_mm[sections.axis])
-    outer, box = frame_boxes(part.slices, sections.axis, element)
-    segments = arc_segments(radius, CHORD_PITCHES * pitch)
-    places = _tool_places(part, sections.axis, planes, element)
-    inflated = convolved(
-        to_shapes(sections.regions), sections.positions_mm, places, towards(element, sections.axis), segments, threads
-    )
-    free = minus(outer, inflated)
-    walls = boundaries(inflated)
-    swept = convolved(free, places, planes, away(element, sections.axis), segments, threads, edges=walls)
-    return minus(box, swept)
-
-
-def _tool_places(part: SlicedPart, axis: int, planes: FloatArray, element: StructuringElement) -> FloatArray:
-    """Planes for the tool's reference point: evenly spaced, and where it stands on faces across the axis."""
-    pitch, radius = float(part.slices.pitch_mm[axis]), element.radius_mm
-    more = math.ceil(radius / pitch + 1.0)
-    low, high = face_levels(part.mesh, axis)
-    first = -more if element.centred or axis != 2 else 0
-    even = planes[0] + pitch * np.arange(first, len(planes) + more)
-    on = [high + element.drop_mm + _ON_MM]
-    if element.centred:
-        on.append(low - element.drop_mm - _ON_MM)
-    return np.unique(np.concatenate((even, *on)))
+    axis, pitch = sections.axis, float(part.slices.pitch_mm[sections.axis])
+    outer, box = frame_boxes(part.slices, axis, element)
+    segments = arc_segments(element.radius_mm, CHORD_PITCHES * pitch)
+    shapes, radii = to_shapes(sections.regions), towards(element, axis)
+    inflated = Convolution(shapes, sections.positions_mm, radii, segments, threads)
+    places, walls, free = tool_places(inflated, outer, even_places(part, axis, planes, element), pitch)
+    swept = Convolution(free, places, away(element, axis), segments, threads, edges=boundaries(walls))
+    return minus(box, swept.on(planes))

@@ -21,7 +21,7 @@ from twin.arrays import FloatArray, frozen
 from twin.cam.element import StructuringElement
 from twin.cam.sections import Sections, SlicedPart, outside_sections
 from twin.cam.tip_lines import tip_regions
-from twin.geometry.convolution import Radii, arc_segments, convolved
+from twin.geometry.convolution import Convolution, Radii, arc_segments
 from twin.geometry.region import Region
 from twin.geometry.shapes import Shape, boundaries, box_shape, grown_each, minus, to_region, to_shapes
 from twin.workpiece.stock import SliceSet
@@ -100,8 +100,9 @@ def inflated_planes(
     if not element.centred and sections.axis != 2:
         return tip_regions(sections, element, planes_mm, chord_mm=chord_mm, threads=threads)
     shapes, segments = to_shapes(sections.regions), arc_segments(element.radius_mm, chord_mm)
-    grown = convolved(shapes, sections.positions_mm, planes_mm, towards(element, sections.axis), segments, threads)
-    return tuple(to_region(s) for s in grown)
+    radii = towards(element, sections.axis)
+    grown = Convolution(shapes, sections.positions_mm, radii, segments, threads)
+    return tuple(to_region(s) for s in grown.on(planes_mm))
 
 
 def shrink(
@@ -138,16 +139,15 @@ def shrink(
         )
         outer, box = frame_boxes(slices, axis, element)
         inside = to_shapes(wide.regions)
-        swept = convolved(
+        swept = Convolution(
             minus(outer, inside),
             wide.positions_mm,
-            own.positions_mm,
             away(element, axis),
             segments,
             threads,
             edges=boundaries(inside),
         )
-        families[axis] = tuple(to_region(s) for s in minus(box, swept))
+        families[axis] = tuple(to_region(s) for s in minus(box, swept.on(own.positions_mm)))
     return SliceSet(low_mm=slices.low_mm, high_mm=slices.high_mm, pitch_mm=slices.pitch_mm, regions=tuple(families))
 
 
