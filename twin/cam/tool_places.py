@@ -3,7 +3,7 @@
 The space where the tool may be ends in edges: where a ball touches two faces at once, its centre rolls along such an
 edge. On planes across it the edge is a corner, which the sweep passes on from plane to plane. Where an edge lies nearly
 along the planes its corner wanders far between two of them, or it ends there, and the tool would be missed at its
-deepest; so planes are added until it wanders no more than two pitches. The same where a part or a hole of that space
+deepest; so planes are added until it wanders no more than one pitch. The same where a part or a hole of that space
 ends: over crests, and in hollows.
 """
 
@@ -25,11 +25,11 @@ from twin.geometry.shapes import Shape, Shapes, minus
 #: How far above a face a tool that stands on it is taken to be, mm: far above rounding, far below any tolerance.
 _ON_MM = 1e-5
 #: Corners that wander farther than this many pitches between two planes need a plane between them.
-_WANDER_PITCHES = 2.0
+_WANDER_PITCHES = 1.0
 #: How often a pitch is halved at most.
 _HALVINGS = 5
 #: Steps of outlines that are smaller than this part of a pitch are noise.
-_STEP_PITCHES = 0.01
+_STEP_PITCHES = 0.02
 
 
 def even_places(part: SlicedPart, axis: int, planes_mm: FloatArray, element: StructuringElement) -> FloatArray:
@@ -68,10 +68,9 @@ def tool_places(
         more = inflated.on(added)
         left = minus(outer, more)
         order = np.argsort(np.concatenate((planes, added)))
-        planes, walls, free, corners = (
-            np.concatenate(both)[order]
-            for both in ((planes, added), (walls, more), (free, left), (corners, _corners(left, pitch_mm)))
-        )
+        planes = np.concatenate((planes, added))[order]
+        walls, free = np.concatenate((walls, more))[order], np.concatenate((free, left))[order]
+        corners = np.concatenate((corners, _corners(left, pitch_mm)))[order]
     return planes, walls, free
 
 

@@ -13,7 +13,7 @@ from twin.arrays import FloatArray
 from twin.geometry.shapes import Shape, outline_rings
 
 #: A corner turns by at least this; what it is matched with may turn by as little as the second.
-_SHARP, _WEAK = math.radians(12.0), math.radians(6.0)
+_SHARP, _WEAK = math.radians(8.0), math.radians(4.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,8 +21,8 @@ class Corners:
     """Corners that stand out of a polygon.
 
     Attributes:
-        sharp_mm: shape (n, 2), those that turn by 12 degrees and more.
-        weak_mm: shape (m, 2), those that turn by 6 degrees and more.
+        sharp_mm: shape (n, 2), those that turn by 8 degrees and more.
+        weak_mm: shape (m, 2), those that turn by 4 degrees and more.
         rings: number of the polygon's rings.
     """
 
@@ -62,4 +62,6 @@ def _farthest(points: FloatArray, others: FloatArray) -> float:
     """Largest distance of points from the nearest of others."""
     if len(points) == 0:
         return 0.0
-    return float(cKDTree(others).query(points)[0].max()) if len(others) else math.inf
+    if len(others) == 0:
+        return math.inf
+    return float(np.max(cKDTree(others).query(points)[0]))
