@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,8 @@ from twin.geometry.pieces import Pieces
 from twin.geometry.shapes import Shapes
 from twin.workpiece.store import PLANE_AXES
 
+#: Numbers of pieces that are neighbours.
+Pairs: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64]]
 #: A piece on a plane counts when its mean width is above this part of the pitch.
 _WIDTH_PITCHES = 0.01
 #: A piece is wide when its area is above this part of its outline's length squared (1/16 for a square).
@@ -24,6 +27,8 @@ _WIDE = 0.005
 _NEAR_PITCHES = 3.0
 #: Pieces that are nowhere thicker than this part of what counts are left out.
 _TIES = 0.125
+#: Pieces beside a region that get thinner from plane to plane belong to it down to this part of what counts.
+_FADES = 1.0 / 64.0
 #: Places on the outline of a piece where its thickness is measured, at most.
 _MEASURED = 128
 
@@ -78,8 +83,8 @@ def leftovers(
     kept = np.flatnonzero(thick > _TIES * thin_mm)
     if len(kept) == 0:
         return ()
-    labels = np.full(len(pieces.shapes), -1, dtype=np.int64)
-    labels[kept] = _connected(pieces.some(kept), pitch_mm)
+    pairs = pieces.near_pairs(_NEAR_PITCHES * pitch_mm)
+    labels = _faded(_connected(pairs, kept, len(thick)), pairs, np.where(thick > _FADES * thin_mm, thick, 0.0))
     found = []
     for label in range(labels.max() + 1):
         places = np.flatnonzero(labels[of] == label)
@@ -142,9 +147,35 @@ def _distances(points: FloatArray, planes_mm: FloatArray, sections: Sections) ->
     return found
 
 
-def _connected(pieces: Pieces, pitch_mm: float) -> NDArray[np.int64]:
-    """Number of the region of each piece: pieces that overlap, or nearly so, on neighbouring planes belong together."""
-    pairs = pieces.near_pairs(_NEAR_PITCHES * pitch_mm)
-    graph = coo_array((np.ones(len(pairs[0]), dtype=np.int8), pairs), shape=(len(pieces.shapes),) * 2)
-    _, labels = connected_components(graph, directed=False)
-    return np.asarray(labels, dtype=np.int64)
+def _connected(pairs: Pairs, kept: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Number of the region of each kept piece, -1 for others: what overlaps, or nearly so, on neighbouring planes.
+
+    Args:
+        pairs: neighbours among all pieces.
+        count: number of all pieces.
+    """
+    number = np.full(count, -1, dtype=np.int64)
+    number[kept] = np.arange(len(kept))
+    one, other = number[pairs[0]], number[pairs[1]]
+    both = (one >= 0) & (other >= 0)
+    graph = coo_array((np.ones(int(both.sum()), dtype=np.int8), (one[both], other[both])), shape=(len(kept),) * 2)
+    labels = np.full(count, -1, dtype=np.int64)
+    labels[kept] = connected_components(graph, directed=False)[1]
+    return labels
+
+
+def _faded(labels: NDArray[np.int64], pairs: Pairs, thick_mm: FloatArray) -> NDArray[np.int64]:
+    """Regions with their thin ends: from plane to plane, as long as there is a thinner piece beside the last one.
+
+    A piece beside two regions belongs to that whose piece is the thicker.
+    """
+    labels = labels.copy()
+    one, other = np.concatenate((pairs[0], pairs[1])), np.concatenate((pairs[1], pairs[0]))
+    thinner = (thick_mm[other] > 0.0) & (thick_mm[other] < thick_mm[one])
+    one, other = one[thinner], other[thinner]
+    while True:
+        ends = np.flatnonzero((labels[one] >= 0) & (labels[other] < 0))
+        if len(ends) == 0:
+            return labels
+        ends = ends[np.argsort(thick_mm[one[ends]], kind="stable")]
+        labels[other[ends]] = labels[one[ends]]
