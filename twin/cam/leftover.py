@@ -11,8 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from twin.arrays import FloatArray
-from twin.cam import leftover_kernels as kernels
-from twin.cam.sections import Sections
+from twin.geometry.closest import ClosestPoints
 from twin.geometry.pieces import Pieces
 from twin.geometry.shapes import Shapes
 from twin.workpiece.store import PLANE_AXES
@@ -60,14 +59,23 @@ class Leftover:
 
 
 def leftovers(
-    left: Shapes, planes_mm: FloatArray, pitch_mm: float, sections: Sections, thin_mm: float
+    left: Shapes,
+    planes_mm: FloatArray,
+    pitch_mm: float,
+    axis: int,
+    surface: ClosestPoints,
+    thin_mm: float,
+    threads: int | None = None,
 ) -> tuple[Leftover, ...]:
     """Connect what is left on planes to regions.
 
     Args:
         left: what is left on each plane.
-        sections: the part's own sections across the same axis.
+        planes_mm: their positions along ``axis``, one ``pitch_mm`` apart.
+        axis: normal of the planes.
+        surface: the part's.
         thin_mm: regions nowhere thicker than this are left out.
+        threads: threads to measure with, all cores if not given.
 
     Returns:
         The regions, the largest first.
@@ -75,8 +83,9 @@ def leftovers(
     pieces = Pieces.of(left, _WIDTH_PITCHES * pitch_mm)
     if len(pieces.shapes) == 0:
         return ()
-    points, of = _measured(pieces)
-    distance = _distances(points, planes_mm[pieces.planes[of]], sections)
+    flat, of = _measured(pieces)
+    points = _in_space(flat, planes_mm[pieces.planes[of]], axis)
+    distance = np.abs(surface.ask(points, threads).distance_mm)
     thick = np.zeros(len(pieces.shapes))
     np.maximum.at(thick, of, distance)
     # what is thinner everywhere would only tie regions together
@@ -90,9 +99,9 @@ def leftovers(
         places = np.flatnonzero(labels[of] == label)
         deepest = places[np.argmax(distance[places])]
         if distance[deepest] > thin_mm:
-            at = _in_space(points[deepest], planes_mm[pieces.planes[of[deepest]]], sections.axis)
             part = pieces.some(np.flatnonzero(labels == label))
-            found.append(_leftover(part, planes_mm[part.planes], pitch_mm, sections.axis, float(distance[deepest]), at))
+            thickest = float(distance[deepest]), points[deepest]
+            found.append(_leftover(part, planes_mm[part.planes], pitch_mm, axis, *thickest))
     return tuple(sorted(found, key=lambda r: -r.volume_mm3))
 
 
@@ -121,30 +130,12 @@ def _leftover(
     )
 
 
-def _in_space(point: FloatArray, plane: float, axis: int) -> FloatArray:
-    """A point of a plane in (x, y, z)."""
-    space = np.empty(3)
-    space[list(PLANE_AXES[axis])] = point
-    space[axis] = plane
+def _in_space(points: FloatArray, planes: FloatArray | float, axis: int) -> FloatArray:
+    """Points of planes, shape (..., 2), in (x, y, z)."""
+    space = np.empty((*points.shape[:-1], 3))
+    space[..., list(PLANE_AXES[axis])] = points
+    space[..., axis] = planes
     return space
-
-
-def _distances(points: FloatArray, planes_mm: FloatArray, sections: Sections) -> FloatArray:
-    """Distance of points on planes from a part, as its sections know it."""
-    rings = [ring for region in sections.regions for ring in region.rings]
-    edges = [np.hstack((ring, np.roll(ring, -1, axis=0))) for ring in rings]
-    counts = np.array([sum(len(ring) for ring in region.rings) for region in sections.regions])
-    begins = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
-    found = np.empty(len(points))
-    kernels.distances(
-        points,
-        np.ascontiguousarray(planes_mm),
-        np.concatenate(edges) if edges else np.empty((0, 4)),
-        begins,
-        sections.positions_mm,
-        found,
-    )
-    return found
 
 
 def _connected(pairs: Pairs, kept: NDArray[np.int64], count: int) -> NDArray[np.int64]:

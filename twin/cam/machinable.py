@@ -15,6 +15,7 @@ from twin.cam.leftover import Leftover, leftovers
 from twin.cam.offset import CHORD_PITCHES, away, frame_boxes, towards
 from twin.cam.sections import Sections, SlicedPart
 from twin.cam.tool_places import even_places, tool_places
+from twin.geometry.closest import ClosestPoints
 from twin.geometry.convolution import Convolution, arc_segments
 from twin.geometry.shapes import Shapes, boundaries, minus, to_shapes
 
@@ -77,7 +78,8 @@ def unmachinable(
     closed = _closed(part, sections, planes, element, threads)
     own = to_shapes(part.slices.regions[axis])
     left = minus(closed, own)
-    found = leftovers(left, planes, pitch, sections, least)
+    surface = ClosestPoints(part.mesh.vertices_mm, part.mesh.triangles, part.mesh.edges)
+    found = leftovers(left, planes, pitch, axis, surface, least, threads)
     return Reach(element=element, axis=axis, pitch_mm=pitch, thin_mm=least, leftovers=found)
 
 
