@@ -27,7 +27,7 @@ _NEAR_PITCHES = 3.0
 #: Pieces that are nowhere thicker than this part of what counts are left out.
 _TIES = 0.125
 #: Pieces beside a region that get thinner from plane to plane belong to it down to this part of what counts.
-_FADES = 1.0 / 64.0
+_FADES = 1.0 / 32.0
 #: Places on the outline of a piece where its thickness is measured, at most.
 _MEASURED = 128
 
