@@ -16,7 +16,7 @@ from twin.cam.offset import CHORD_PITCHES, away, frame_boxes, towards
 from twin.cam.sections import Sections, SlicedPart
 from twin.cam.tool_places import even_places, tool_places
 from twin.geometry.closest import ClosestPoints
-from twin.geometry.convolution import Convolution, arc_segments
+from twin.geometry.convolution import Convolution
 from twin.geometry.shapes import Shapes, boundaries, minus, to_shapes
 
 
@@ -98,9 +98,10 @@ def _closed(
     """Sections of what stays: everything that no position of the tool reaches, within the part's box."""
     axis, pitch = sections.axis, float(part.slices.pitch_mm[sections.axis])
     outer, box = frame_boxes(part.slices, axis, element)
-    segments = arc_segments(element.radius_mm, CHORD_PITCHES * pitch)
+    radius, chord = element.radius_mm, CHORD_PITCHES * pitch
     shapes, radii = to_shapes(sections.regions), towards(element, axis)
-    inflated = Convolution(shapes, sections.positions_mm, radii, segments, threads)
+    inflated = Convolution(shapes, sections.positions_mm, radii, radius, chord, threads=threads)
     places, walls, free = tool_places(inflated, outer, even_places(part, axis, planes, element), pitch)
-    swept = Convolution(free, places, away(element, axis), segments, threads, edges=boundaries(walls))
+    radii = away(element, axis)
+    swept = Convolution(free, places, radii, radius, chord, threads=threads, edges=boundaries(walls))
     return minus(box, swept.on(planes))

@@ -99,9 +99,8 @@ def inflated_planes(
     """
     if not element.centred and sections.axis != 2:
         return tip_regions(sections, element, planes_mm, chord_mm=chord_mm, threads=threads)
-    shapes, segments = to_shapes(sections.regions), arc_segments(element.radius_mm, chord_mm)
-    radii = towards(element, sections.axis)
-    grown = Convolution(shapes, sections.positions_mm, radii, segments, threads)
+    shapes, radii = to_shapes(sections.regions), towards(element, sections.axis)
+    grown = Convolution(shapes, sections.positions_mm, radii, element.radius_mm, chord_mm, threads=threads)
     return tuple(to_region(s) for s in grown.on(planes_mm))
 
 
@@ -129,7 +128,6 @@ def shrink(
     """
     slices = part.slices if isinstance(part, SlicedPart) else part
     chord = CHORD_PITCHES * float(slices.pitch_mm.min()) if chord_mm is None else chord_mm
-    segments = arc_segments(element.radius_mm, chord)
     families: list[tuple[Region, ...]] = [(), (), ()]
     for axis in axes:
         sections = outside_sections(part.mesh, axis) if isinstance(part, SlicedPart) else None
@@ -143,8 +141,9 @@ def shrink(
             minus(outer, inside),
             wide.positions_mm,
             away(element, axis),
-            segments,
-            threads,
+            element.radius_mm,
+            chord,
+            threads=threads,
             edges=boundaries(inside),
         )
         families[axis] = tuple(to_region(s) for s in minus(box, swept.on(own.positions_mm)))

@@ -14,6 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.geometry.guards import guarded
 from twin.geometry.shapes import Shape, Shapes
 
 #: Neighbours compared at a time.
@@ -42,9 +43,10 @@ class Convolution:
         shapes: Shapes,
         positions_mm: FloatArray,
         radii: Radii,
-        segments: int,
-        threads: int | None,
+        radius_mm: float,
+        chord_mm: float,
         *,
+        threads: int | None = None,
         edges: Shapes | None = None,
     ) -> None:
         """Compare neighbours.
@@ -53,12 +55,15 @@ class Convolution:
             shapes: sections at ``positions_mm``, which increase.
             positions_mm: shape (n,).
             radii: from heights above a plane to radii, NaN out of reach.
-            segments: segments a quarter circle.
+            radius_mm: the largest of these.
+            chord_mm: how far chords of the largest arcs may stand inside.
             threads: threads to work with, all cores if None.
             edges: the sections' boundaries, where these are less than the polygons': without a frame that stands for
                 everything around.
         """
-        self._shapes, self._positions, self._radii, self._segments = shapes, positions_mm, radii, segments
+        shapes = guarded(shapes, radius_mm)
+        self._shapes, self._positions, self._radii = shapes, positions_mm, radii
+        self._segments = arc_segments(radius_mm, chord_mm)
         self._threads = threads or os.cpu_count() or 1
         self._some = ~shapely.is_empty(shapes)
         shapely.bounds(shapes)  # boxes are kept when first asked for, which threads must not do side by side
