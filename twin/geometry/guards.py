@@ -17,7 +17,7 @@ from twin.geometry.shapes import Shape, Shapes
 #: Edges shorter than this part of the radius may be left out; a little above what GEOS takes.
 _SHORT = 0.0125
 #: Edges from this many such lengths get vertices close to their ends.
-_LONG = 3.0
+_LONG = 10.0
 
 
 def guarded(shapes: Shapes, radius_mm: float) -> Shapes:
