@@ -37,13 +37,14 @@ class Leftover:
     """One connected region of material that stays.
 
     Attributes:
-        volume_mm3: by the midpoint rule over its slices.
+        volume_mm3: of its slices, each with its area as far as it stands for the region.
         thickness_mm: largest distance from the part.
         deepest_mm: where that is, shape (3,).
         low_mm, high_mm: corners of its box, shape (3,).
         centroid_mm: shape (3,).
         axis: normal of its slices.
         planes_mm: position of each of its pieces.
+        slabs_mm: shape (n, 2), from where to where each piece stands for the region.
         pieces: polygons, one or more a plane.
     """
 
@@ -55,13 +56,14 @@ class Leftover:
     centroid_mm: FloatArray
     axis: int
     planes_mm: FloatArray
+    slabs_mm: FloatArray
     pieces: Shapes
 
 
 def leftovers(
     left: Shapes,
     planes_mm: FloatArray,
-    pitch_mm: float,
+    slabs_mm: FloatArray,
     axis: int,
     surface: ClosestPoints,
     thin_mm: float,
@@ -71,7 +73,8 @@ def leftovers(
 
     Args:
         left: what is left on each plane.
-        planes_mm: their positions along ``axis``, one ``pitch_mm`` apart.
+        planes_mm: their positions along ``axis``, evenly spaced.
+        slabs_mm: shape (n, 2), from where to where each plane stands for the part, without gaps.
         axis: normal of the planes.
         surface: the part's.
         thin_mm: regions nowhere thicker than this are left out.
@@ -80,6 +83,7 @@ def leftovers(
     Returns:
         The regions, the largest first.
     """
+    pitch_mm = float(slabs_mm[-1, 1] - slabs_mm[0, 0]) / len(slabs_mm)
     pieces = Pieces.of(left, _WIDTH_PITCHES * pitch_mm)
     if len(pieces.shapes) == 0:
         return ()
@@ -101,7 +105,7 @@ def leftovers(
         if distance[deepest] > thin_mm:
             part = pieces.some(np.flatnonzero(labels == label))
             thickest = float(distance[deepest]), points[deepest]
-            found.append(_leftover(part, planes_mm[part.planes], pitch_mm, axis, *thickest))
+            found.append(_leftover(part, planes_mm[part.planes], slabs_mm[part.planes], axis, *thickest))
     return tuple(sorted(found, key=lambda r: -r.volume_mm3))
 
 
@@ -112,20 +116,20 @@ def _measured(pieces: Pieces) -> tuple[FloatArray, NDArray[np.int64]]:
 
 
 def _leftover(
-    pieces: Pieces, planes_mm: FloatArray, pitch_mm: float, axis: int, thickness_mm: float, deepest_mm: FloatArray
+    pieces: Pieces, planes_mm: FloatArray, slabs_mm: FloatArray, axis: int, thickness_mm: float, deepest_mm: FloatArray
 ) -> Leftover:
-    areas, bounds = pieces.areas_mm2, pieces.bounds_mm
-    centroid = _in_space(areas @ pieces.centroids_mm / areas.sum(), float(areas @ planes_mm / areas.sum()), axis)
-    half = 0.5 * pitch_mm
+    volumes, bounds = pieces.areas_mm2 * (slabs_mm[:, 1] - slabs_mm[:, 0]), pieces.bounds_mm
+    share = volumes / volumes.sum()
     return Leftover(
-        volume_mm3=float(areas.sum()) * pitch_mm,
+        volume_mm3=float(volumes.sum()),
         thickness_mm=thickness_mm,
         deepest_mm=deepest_mm,
-        low_mm=_in_space(bounds[:, :2].min(axis=0), float(planes_mm.min()) - half, axis),
-        high_mm=_in_space(bounds[:, 2:].max(axis=0), float(planes_mm.max()) + half, axis),
-        centroid_mm=centroid,
+        low_mm=_in_space(bounds[:, :2].min(axis=0), float(slabs_mm.min()), axis),
+        high_mm=_in_space(bounds[:, 2:].max(axis=0), float(slabs_mm.max()), axis),
+        centroid_mm=_in_space(share @ pieces.centroids_mm, float(share @ slabs_mm.mean(axis=1)), axis),
         axis=axis,
         planes_mm=planes_mm,
+        slabs_mm=slabs_mm,
         pieces=pieces.shapes,
     )
 

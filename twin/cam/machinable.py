@@ -14,6 +14,7 @@ from twin.cam.element import StructuringElement
 from twin.cam.leftover import Leftover, leftovers
 from twin.cam.offset import CHORD_PITCHES, away, frame_boxes, towards
 from twin.cam.sections import Sections, SlicedPart
+from twin.cam.slabs import slabs_mm
 from twin.cam.tool_places import even_places, tool_places
 from twin.geometry.closest import ClosestPoints
 from twin.geometry.convolution import Convolution
@@ -79,7 +80,7 @@ def unmachinable(
     own = to_shapes(part.slices.regions[axis])
     left = minus(closed, own)
     surface = ClosestPoints(part.mesh.vertices_mm, part.mesh.triangles, part.mesh.edges)
-    found = leftovers(left, planes, pitch, axis, surface, least, threads)
+    found = leftovers(left, planes, slabs_mm(part.mesh, axis, planes, pitch), axis, surface, least, threads)
     return Reach(element=element, axis=axis, pitch_mm=pitch, thin_mm=least, leftovers=found)
 
 

@@ -81,7 +81,7 @@ def _write_meshes(reaches: dict[str, Reach], folder: Path, *, force: bool) -> No
     folder.mkdir(parents=True, exist_ok=True)
     for text, reach in reaches.items():
         if reach.leftovers:
-            write_mesh(folder / _file_name(text), leftover_mesh(reach.leftovers, reach.pitch_mm), force=force)
+            write_mesh(folder / _file_name(text), leftover_mesh(reach.leftovers), force=force)
 
 
 def _write_recording(sliced: SlicedPart, reaches: dict[str, Reach], path: Path, *, force: bool) -> None:
@@ -92,7 +92,7 @@ def _write_recording(sliced: SlicedPart, reaches: dict[str, Reach], path: Path, 
     views = [SolidView(entity="part", vertices_mm=part.vertices_mm, triangles=part.triangles, color=_PART_COLOR)]
     for number, (text, reach) in enumerate(reaches.items()):
         if reach.leftovers:
-            made = leftover_mesh(reach.leftovers, reach.pitch_mm)
+            made = leftover_mesh(reach.leftovers)
             views.append(
                 SolidView(
                     entity=f"leftover/{_slug(text)}",

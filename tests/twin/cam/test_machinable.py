@@ -148,7 +148,7 @@ def test_leftovers_as_triangles_are_a_solid_of_the_same_volume() -> None:
         (unmachinable(part, StructuringElement.ball(2.0), axis=1), 1),
     ):
         assert found.axis == axis
-        mesh = leftover_mesh(found.leftovers, found.pitch_mm)
+        mesh = leftover_mesh(found.leftovers)
         made = solid(mesh.vertices_mm[mesh.triangles], "leftovers")
         assert made.volume_mm3 == pytest.approx(found.volume_mm3, rel=1e-3)
 
