@@ -88,7 +88,8 @@ def thin_bound_mm(element: StructuringElement, pitch_mm: float) -> float:
     """Thickness up to which leftovers may come from the slices' pitch alone.
 
     Where a surface lies nearly along the slices these know it to about half a pitch; the tool's sweep over it between
-    two planes misses as much again, less what its radius bridges.
+    two planes misses as much again, less what its radius bridges. `twin.cam.tool_places` adds planes where that would
+    be the tool's deepest places.
     """
     return min(pitch_mm, 0.5 * pitch_mm + pitch_mm**2 / element.radius_mm)
 

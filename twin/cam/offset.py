@@ -7,7 +7,8 @@ Conventions. With `StructuringElement.ball` the result is where the ball's centr
 `StructuringElement.tool` where the tool's tip may not be. As tools reach up without end, that is everything below the
 inflated top; on planes across x and y it is found by `twin.cam.tip_lines`. Elsewhere rounding arcs are inscribed, with
 chords no further than ``chord_mm`` inside, and what lies between slices is left out: an inflated part is never too
-large, and a shrunk one never too small. How much it may lack is told by `bound_mm`.
+large, and a shrunk one never too small, but for what GEOS leaves out, see `twin.geometry.guards`. How much it may lack
+is told by `bound_mm`.
 """
 
 from __future__ import annotations

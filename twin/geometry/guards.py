@@ -3,7 +3,8 @@
 Before it inflates a polygon, GEOS leaves out vertices of shallow concave corners whose edge before them is shorter than
 one hundredth of the radius. Beside a long edge that tilts the whole edge: half a micrometre for a ball of 4 mm on the
 plate of a small part, up to a hundredth of the radius at worst. A vertex on the long edge, close to its end, keeps the
-tilt within that end.
+tilt within that end. Arcs of short edges are not guarded: there the edges that GEOS makes are at most two hundredths of
+the radius r long, and stand out by (r / 50)^2 / (8 r), 5e-5 r.
 """
 
 from __future__ import annotations
