@@ -74,7 +74,7 @@ def torus_example() -> ModuleType:
 
 
 @cache
-def torus(around: int = 512, along: int = 96) -> Solid:
+def torus(around: int = 512, along: int = 160) -> Solid:
     """The torus example's part."""
     return solid(torus_example().torus(around, along), "torus")
 

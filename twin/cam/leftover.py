@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +11,13 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from twin.arrays import FloatArray
-from twin.cam import leftover_kernels as kernels
-from twin.cam.sections import Sections
+from twin.geometry.closest import ClosestPoints
 from twin.geometry.pieces import Pieces
 from twin.geometry.shapes import Shapes
 from twin.workpiece.store import PLANE_AXES
 
+#: Numbers of pieces that are neighbours.
+Pairs: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64]]
 #: A piece on a plane counts when its mean width is above this part of the pitch.
 _WIDTH_PITCHES = 0.01
 #: A piece is wide when its area is above this part of its outline's length squared (1/16 for a square).
@@ -24,6 +26,8 @@ _WIDE = 0.005
 _NEAR_PITCHES = 3.0
 #: Pieces that are nowhere thicker than this part of what counts are left out.
 _TIES = 0.125
+#: Pieces beside a region that get thinner from plane to plane belong to it down to this part of what counts.
+_FADES = 1.0 / 32.0
 #: Places on the outline of a piece where its thickness is measured, at most.
 _MEASURED = 128
 
@@ -33,13 +37,14 @@ class Leftover:
     """One connected region of material that stays.
 
     Attributes:
-        volume_mm3: by the midpoint rule over its slices.
+        volume_mm3: of its slices, each with its area as far as it stands for the region.
         thickness_mm: largest distance from the part.
         deepest_mm: where that is, shape (3,).
         low_mm, high_mm: corners of its box, shape (3,).
         centroid_mm: shape (3,).
         axis: normal of its slices.
         planes_mm: position of each of its pieces.
+        slabs_mm: shape (n, 2), from where to where each piece stands for the region.
         pieces: polygons, one or more a plane.
     """
 
@@ -51,43 +56,56 @@ class Leftover:
     centroid_mm: FloatArray
     axis: int
     planes_mm: FloatArray
+    slabs_mm: FloatArray
     pieces: Shapes
 
 
 def leftovers(
-    left: Shapes, planes_mm: FloatArray, pitch_mm: float, sections: Sections, thin_mm: float
+    left: Shapes,
+    planes_mm: FloatArray,
+    slabs_mm: FloatArray,
+    axis: int,
+    surface: ClosestPoints,
+    thin_mm: float,
+    threads: int | None = None,
 ) -> tuple[Leftover, ...]:
     """Connect what is left on planes to regions.
 
     Args:
         left: what is left on each plane.
-        sections: the part's own sections across the same axis.
+        planes_mm: their positions along ``axis``, evenly spaced.
+        slabs_mm: shape (n, 2), from where to where each plane stands for the part, without gaps.
+        axis: normal of the planes.
+        surface: the part's.
         thin_mm: regions nowhere thicker than this are left out.
+        threads: threads to measure with, all cores if not given.
 
     Returns:
         The regions, the largest first.
     """
+    pitch_mm = float(slabs_mm[-1, 1] - slabs_mm[0, 0]) / len(slabs_mm)
     pieces = Pieces.of(left, _WIDTH_PITCHES * pitch_mm)
     if len(pieces.shapes) == 0:
         return ()
-    points, of = _measured(pieces)
-    distance = _distances(points, planes_mm[pieces.planes[of]], sections)
+    flat, of = _measured(pieces)
+    points = _in_space(flat, planes_mm[pieces.planes[of]], axis)
+    distance = np.abs(surface.ask(points, threads).distance_mm)
     thick = np.zeros(len(pieces.shapes))
     np.maximum.at(thick, of, distance)
     # what is thinner everywhere would only tie regions together
     kept = np.flatnonzero(thick > _TIES * thin_mm)
     if len(kept) == 0:
         return ()
-    labels = np.full(len(pieces.shapes), -1, dtype=np.int64)
-    labels[kept] = _connected(pieces.some(kept), pitch_mm)
+    pairs = pieces.near_pairs(_NEAR_PITCHES * pitch_mm)
+    labels = _faded(_connected(pairs, kept, len(thick)), pairs, np.where(thick > _FADES * thin_mm, thick, 0.0))
     found = []
     for label in range(labels.max() + 1):
         places = np.flatnonzero(labels[of] == label)
         deepest = places[np.argmax(distance[places])]
         if distance[deepest] > thin_mm:
-            at = _in_space(points[deepest], planes_mm[pieces.planes[of[deepest]]], sections.axis)
             part = pieces.some(np.flatnonzero(labels == label))
-            found.append(_leftover(part, planes_mm[part.planes], pitch_mm, sections.axis, float(distance[deepest]), at))
+            thickest = float(distance[deepest]), points[deepest]
+            found.append(_leftover(part, planes_mm[part.planes], slabs_mm[part.planes], axis, *thickest))
     return tuple(sorted(found, key=lambda r: -r.volume_mm3))
 
 
@@ -98,53 +116,61 @@ def _measured(pieces: Pieces) -> tuple[FloatArray, NDArray[np.int64]]:
 
 
 def _leftover(
-    pieces: Pieces, planes_mm: FloatArray, pitch_mm: float, axis: int, thickness_mm: float, deepest_mm: FloatArray
+    pieces: Pieces, planes_mm: FloatArray, slabs_mm: FloatArray, axis: int, thickness_mm: float, deepest_mm: FloatArray
 ) -> Leftover:
-    areas, bounds = pieces.areas_mm2, pieces.bounds_mm
-    centroid = _in_space(areas @ pieces.centroids_mm / areas.sum(), float(areas @ planes_mm / areas.sum()), axis)
-    half = 0.5 * pitch_mm
+    volumes, bounds = pieces.areas_mm2 * (slabs_mm[:, 1] - slabs_mm[:, 0]), pieces.bounds_mm
+    share = volumes / volumes.sum()
     return Leftover(
-        volume_mm3=float(areas.sum()) * pitch_mm,
+        volume_mm3=float(volumes.sum()),
         thickness_mm=thickness_mm,
         deepest_mm=deepest_mm,
-        low_mm=_in_space(bounds[:, :2].min(axis=0), float(planes_mm.min()) - half, axis),
-        high_mm=_in_space(bounds[:, 2:].max(axis=0), float(planes_mm.max()) + half, axis),
-        centroid_mm=centroid,
+        low_mm=_in_space(bounds[:, :2].min(axis=0), float(slabs_mm.min()), axis),
+        high_mm=_in_space(bounds[:, 2:].max(axis=0), float(slabs_mm.max()), axis),
+        centroid_mm=_in_space(share @ pieces.centroids_mm, float(share @ slabs_mm.mean(axis=1)), axis),
         axis=axis,
         planes_mm=planes_mm,
+        slabs_mm=slabs_mm,
         pieces=pieces.shapes,
     )
 
 
-def _in_space(point: FloatArray, plane: float, axis: int) -> FloatArray:
-    """A point of a plane in (x, y, z)."""
-    space = np.empty(3)
-    space[list(PLANE_AXES[axis])] = point
-    space[axis] = plane
+def _in_space(points: FloatArray, planes: FloatArray | float, axis: int) -> FloatArray:
+    """Points of planes, shape (..., 2), in (x, y, z)."""
+    space = np.empty((*points.shape[:-1], 3))
+    space[..., list(PLANE_AXES[axis])] = points
+    space[..., axis] = planes
     return space
 
 
-def _distances(points: FloatArray, planes_mm: FloatArray, sections: Sections) -> FloatArray:
-    """Distance of points on planes from a part, as its sections know it."""
-    rings = [ring for region in sections.regions for ring in region.rings]
-    edges = [np.hstack((ring, np.roll(ring, -1, axis=0))) for ring in rings]
-    counts = np.array([sum(len(ring) for ring in region.rings) for region in sections.regions])
-    begins = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
-    found = np.empty(len(points))
-    kernels.distances(
-        points,
-        np.ascontiguousarray(planes_mm),
-        np.concatenate(edges) if edges else np.empty((0, 4)),
-        begins,
-        sections.positions_mm,
-        found,
-    )
-    return found
+def _connected(pairs: Pairs, kept: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Number of the region of each kept piece, -1 for others: what overlaps, or nearly so, on neighbouring planes.
+
+    Args:
+        pairs: neighbours among all pieces.
+        count: number of all pieces.
+    """
+    number = np.full(count, -1, dtype=np.int64)
+    number[kept] = np.arange(len(kept))
+    one, other = number[pairs[0]], number[pairs[1]]
+    both = (one >= 0) & (other >= 0)
+    graph = coo_array((np.ones(int(both.sum()), dtype=np.int8), (one[both], other[both])), shape=(len(kept),) * 2)
+    labels = np.full(count, -1, dtype=np.int64)
+    labels[kept] = connected_components(graph, directed=False)[1]
+    return labels
 
 
-def _connected(pieces: Pieces, pitch_mm: float) -> NDArray[np.int64]:
-    """Number of the region of each piece: pieces that overlap, or nearly so, on neighbouring planes belong together."""
-    pairs = pieces.near_pairs(_NEAR_PITCHES * pitch_mm)
-    graph = coo_array((np.ones(len(pairs[0]), dtype=np.int8), pairs), shape=(len(pieces.shapes),) * 2)
-    _, labels = connected_components(graph, directed=False)
-    return np.asarray(labels, dtype=np.int64)
+def _faded(labels: NDArray[np.int64], pairs: Pairs, thick_mm: FloatArray) -> NDArray[np.int64]:
+    """Regions with their thin ends: from plane to plane, as long as there is a thinner piece beside the last one.
+
+    A piece beside two regions belongs to that whose piece is the thicker.
+    """
+    labels = labels.copy()
+    one, other = np.concatenate((pairs[0], pairs[1])), np.concatenate((pairs[1], pairs[0]))
+    thinner = (thick_mm[other] > 0.0) & (thick_mm[other] < thick_mm[one])
+    one, other = one[thinner], other[thinner]
+    while True:
+        ends = np.flatnonzero((labels[one] >= 0) & (labels[other] < 0))
+        if len(ends) == 0:
+            return labels
+        ends = ends[np.argsort(thick_mm[one[ends]], kind="stable")]
+        labels[other[ends]] = labels[one[ends]]

@@ -1,4 +1,4 @@
-"""Leftover material as triangles: every piece of a slice as a prism of one pitch."""
+"""Leftover material as triangles: every piece of a slice as a prism over what it stands for."""
 
 from __future__ import annotations
 
@@ -14,16 +14,12 @@ from twin.workpiece.store import PLANE_AXES
 from twin.workpiece.to_mesh import SurfaceMesh
 
 
-def leftover_mesh(regions: Iterable[Leftover], pitch_mm: float) -> SurfaceMesh:
-    """Regions as closed prisms that touch each other along the slices' borders; for the eye, and for other programs.
-
-    Args:
-        pitch_mm: distance of the regions' slices.
-    """
+def leftover_mesh(regions: Iterable[Leftover]) -> SurfaceMesh:
+    """Regions as closed prisms that touch each other along the slices' borders; for the eye, and for other programs."""
     corners = [
-        _prism(piece, float(plane), 0.5 * pitch_mm, region.axis)
+        _prism(piece, float(low), float(high), region.axis)
         for region in regions
-        for piece, plane in zip(region.pieces, region.planes_mm, strict=True)
+        for piece, (low, high) in zip(region.pieces, region.slabs_mm, strict=True)
     ]
     triangles = np.concatenate(corners) if corners else np.empty((0, 3, 3))
     cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
@@ -32,10 +28,9 @@ def leftover_mesh(regions: Iterable[Leftover], pitch_mm: float) -> SurfaceMesh:
     return SurfaceMesh(triangles.reshape(-1, 3), normals, np.arange(3 * len(triangles)).reshape(-1, 3))
 
 
-def _prism(piece: Shape, plane: float, half_mm: float, axis: int) -> FloatArray:
+def _prism(piece: Shape, low: float, high: float, axis: int) -> FloatArray:
     """Triangles of one piece between two planes, counter-clockwise seen from outside, shape (n, 3, 3)."""
     caps, edges = prism_parts(piece)
-    low, high = plane - half_mm, plane + half_mm
     a, b = edges[:, 0], edges[:, 1]
     below, above = _at(a, low, axis), _at(a, high, axis)
     next_below, next_above = _at(b, low, axis), _at(b, high, axis)

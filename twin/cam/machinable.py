@@ -7,21 +7,18 @@ side; with a tool about its tip it comes from above, and what lies below an over
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-
-import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cam.element import StructuringElement
 from twin.cam.leftover import Leftover, leftovers
 from twin.cam.offset import CHORD_PITCHES, away, frame_boxes, towards
-from twin.cam.sections import Sections, SlicedPart, face_levels
-from twin.geometry.convolution import arc_segments, convolved
+from twin.cam.sections import Sections, SlicedPart
+from twin.cam.slabs import slabs_mm
+from twin.cam.tool_places import even_places, tool_places
+from twin.geometry.closest import ClosestPoints
+from twin.geometry.convolution import Convolution
 from twin.geometry.shapes import Shapes, boundaries, minus, to_shapes
-
-#: How far above a face a tool that stands on it is taken to be, mm: far above rounding, far below any tolerance.
-_ON_MM = 1e-5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -82,7 +79,8 @@ def unmachinable(
     closed = _closed(part, sections, planes, element, threads)
     own = to_shapes(part.slices.regions[axis])
     left = minus(closed, own)
-    found = leftovers(left, planes, pitch, sections, least)
+    surface = ClosestPoints(part.mesh.vertices_mm, part.mesh.triangles, part.mesh.edges)
+    found = leftovers(left, planes, slabs_mm(part.mesh, axis, planes, pitch), axis, surface, least, threads)
     return Reach(element=element, axis=axis, pitch_mm=pitch, thin_mm=least, leftovers=found)
 
 
@@ -90,7 +88,8 @@ def thin_bound_mm(element: StructuringElement, pitch_mm: float) -> float:
     """Thickness up to which leftovers may come from the slices' pitch alone.
 
     Where a surface lies nearly along the slices these know it to about half a pitch; the tool's sweep over it between
-    two planes misses as much again, less what its radius bridges.
+    two planes misses as much again, less what its radius bridges. `twin.cam.tool_places` adds planes where that would
+    be the tool's deepest places.
     """
     return min(pitch_mm, 0.5 * pitch_mm + pitch_mm**2 / element.radius_mm)
 
@@ -99,27 +98,12 @@ def _closed(
     part: SlicedPart, sections: Sections, planes: FloatArray, element: StructuringElement, threads: int | None
 ) -> Shapes:
     """Sections of what stays: everything that no position of the tool reaches, within the part's box."""
-    radius, pitch = element.radius_mm, float(part.slices.pitch_mm[sections.axis])
-    outer, box = frame_boxes(part.slices, sections.axis, element)
-    segments = arc_segments(radius, CHORD_PITCHES * pitch)
-    places = _tool_places(part, sections.axis, planes, element)
-    inflated = convolved(
-        to_shapes(sections.regions), sections.positions_mm, places, towards(element, sections.axis), segments, threads
-    )
-    free = minus(outer, inflated)
-    walls = boundaries(inflated)
-    swept = convolved(free, places, planes, away(element, sections.axis), segments, threads, edges=walls)
-    return minus(box, swept)
-
-
-def _tool_places(part: SlicedPart, axis: int, planes: FloatArray, element: StructuringElement) -> FloatArray:
-    """Planes for the tool's reference point: evenly spaced, and where it stands on faces across the axis."""
-    pitch, radius = float(part.slices.pitch_mm[axis]), element.radius_mm
-    more = math.ceil(radius / pitch + 1.0)
-    low, high = face_levels(part.mesh, axis)
-    first = -more if element.centred or axis != 2 else 0
-    even = planes[0] + pitch * np.arange(first, len(planes) + more)
-    on = [high + element.drop_mm + _ON_MM]
-    if element.centred:
-        on.append(low - element.drop_mm - _ON_MM)
-    return np.unique(np.concatenate((even, *on)))
+    axis, pitch = sections.axis, float(part.slices.pitch_mm[sections.axis])
+    outer, box = frame_boxes(part.slices, axis, element)
+    radius, chord = element.radius_mm, CHORD_PITCHES * pitch
+    shapes, radii = to_shapes(sections.regions), towards(element, axis)
+    inflated = Convolution(shapes, sections.positions_mm, radii, radius, chord, threads=threads)
+    places, walls, free = tool_places(inflated, outer, even_places(part, axis, planes, element), pitch)
+    radii = away(element, axis)
+    swept = Convolution(free, places, radii, radius, chord, threads=threads, edges=boundaries(walls))
+    return minus(box, swept.on(planes))

@@ -7,7 +7,8 @@ Conventions. With `StructuringElement.ball` the result is where the ball's centr
 `StructuringElement.tool` where the tool's tip may not be. As tools reach up without end, that is everything below the
 inflated top; on planes across x and y it is found by `twin.cam.tip_lines`. Elsewhere rounding arcs are inscribed, with
 chords no further than ``chord_mm`` inside, and what lies between slices is left out: an inflated part is never too
-large, and a shrunk one never too small. How much it may lack is told by `bound_mm`.
+large, and a shrunk one never too small, but for what GEOS leaves out, see `twin.geometry.guards`. How much it may lack
+is told by `bound_mm`.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from twin.arrays import FloatArray, frozen
 from twin.cam.element import StructuringElement
 from twin.cam.sections import Sections, SlicedPart, outside_sections
 from twin.cam.tip_lines import tip_regions
-from twin.geometry.convolution import Radii, arc_segments, convolved
+from twin.geometry.convolution import Convolution, Radii, arc_segments
 from twin.geometry.region import Region
 from twin.geometry.shapes import Shape, boundaries, box_shape, grown_each, minus, to_region, to_shapes
 from twin.workpiece.stock import SliceSet
@@ -99,9 +100,9 @@ def inflated_planes(
     """
     if not element.centred and sections.axis != 2:
         return tip_regions(sections, element, planes_mm, chord_mm=chord_mm, threads=threads)
-    shapes, segments = to_shapes(sections.regions), arc_segments(element.radius_mm, chord_mm)
-    grown = convolved(shapes, sections.positions_mm, planes_mm, towards(element, sections.axis), segments, threads)
-    return tuple(to_region(s) for s in grown)
+    shapes, radii = to_shapes(sections.regions), towards(element, sections.axis)
+    grown = Convolution(shapes, sections.positions_mm, radii, element.radius_mm, chord_mm, threads=threads)
+    return tuple(to_region(s) for s in grown.on(planes_mm))
 
 
 def shrink(
@@ -128,7 +129,6 @@ def shrink(
     """
     slices = part.slices if isinstance(part, SlicedPart) else part
     chord = CHORD_PITCHES * float(slices.pitch_mm.min()) if chord_mm is None else chord_mm
-    segments = arc_segments(element.radius_mm, chord)
     families: list[tuple[Region, ...]] = [(), (), ()]
     for axis in axes:
         sections = outside_sections(part.mesh, axis) if isinstance(part, SlicedPart) else None
@@ -138,16 +138,16 @@ def shrink(
         )
         outer, box = frame_boxes(slices, axis, element)
         inside = to_shapes(wide.regions)
-        swept = convolved(
+        swept = Convolution(
             minus(outer, inside),
             wide.positions_mm,
-            own.positions_mm,
             away(element, axis),
-            segments,
-            threads,
+            element.radius_mm,
+            chord,
+            threads=threads,
             edges=boundaries(inside),
         )
-        families[axis] = tuple(to_region(s) for s in minus(box, swept))
+        families[axis] = tuple(to_region(s) for s in minus(box, swept.on(own.positions_mm)))
     return SliceSet(low_mm=slices.low_mm, high_mm=slices.high_mm, pitch_mm=slices.pitch_mm, regions=tuple(families))
 
 

@@ -122,13 +122,20 @@ def _cut(mesh: Solid, axis: int, cuts_mm: FloatArray, positions_mm: FloatArray) 
 
 def face_levels(mesh: Solid, axis: int) -> tuple[FloatArray, FloatArray]:
     """Positions of faces across an axis: those with material above them, and those with material below."""
+    which, _ = flat_triangles(mesh, axis)
+    heights = mesh.vertices_mm[mesh.triangles[which, 0], axis]
+    up = _normals(mesh, which)[:, axis] > 0.0
+    return np.unique(heights[~up]), np.unique(heights[up])
+
+
+def flat_triangles(mesh: Solid, axis: int) -> tuple[NDArray[np.int64], FloatArray]:
+    """Triangles that lie across an axis, and their areas in mm2."""
     level = _nearly_level(mesh, axis)
     a, b, c = (mesh.vertices_mm[mesh.triangles[level, i]] for i in range(3))
     cross = np.cross(b - a, c - a)
     size = np.linalg.norm(cross, axis=1)
-    flat = (np.abs(cross[:, axis]) >= _ACROSS * size) & (size > 0.0)
-    heights, up = a[flat, axis], cross[flat, axis] > 0.0
-    return np.unique(heights[~up]), np.unique(heights[up])
+    flat = np.flatnonzero((np.abs(cross[:, axis]) >= _ACROSS * size) & (size > 0.0))
+    return level[flat], 0.5 * size[flat]
 
 
 def _nearly_level(mesh: Solid, axis: int) -> NDArray[np.int64]:

@@ -80,7 +80,7 @@ def _write_meshes(reaches: dict[str, Reach], folder: Path, *, force: bool) -> No
     folder.mkdir(parents=True, exist_ok=True)
     for text, reach in reaches.items():
         if reach.leftovers:
-            write_mesh(folder / _file_name(text), leftover_mesh(reach.leftovers, reach.pitch_mm), force=force)
+            write_mesh(folder / _file_name(text), leftover_mesh(reach.leftovers), force=force)
 
 
 def _file_name(text: str) -> str:

@@ -79,7 +79,7 @@ def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None
     _fill_region(axes, cut)
     for number, reach in enumerate(reaches.values()):
         color = _COLORS[number % len(_COLORS)]
-        boxes = [b for region in reach.leftovers for b in _cut_boxes(region, reach.pitch_mm, axis, plane)]
+        boxes = [b for region in reach.leftovers for b in _cut_boxes(region, axis, plane)]
         axes.add_collection(PolyCollection(boxes, facecolors=color, edgecolors="none", alpha=0.85))
     reach_mm = max(8.0 * deepest.thickness_mm, 0.75 * float(np.ptp([deepest.low_mm[2], deepest.high_mm[2]])))
     middle = deepest.deepest_mm[[u, v]]
@@ -87,13 +87,12 @@ def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None
     axes.set_title(f"Cut at {_AXES[axis]} {plane:.2f}, through the thickest place ({deepest.thickness_mm:.3f} mm)")
 
 
-def _cut_boxes(region: Leftover, pitch_mm: float, axis: int, plane: float) -> list[FloatArray]:
-    """Where a plane across x or y cuts a region's slices, as rectangles of one pitch."""
+def _cut_boxes(region: Leftover, axis: int, plane: float) -> list[FloatArray]:
+    """Where a plane across x or y cuts a region's slices, as rectangles."""
     if region.axis != 2:
         return []
     boxes = []
-    for piece, z in zip(region.pieces, region.planes_mm, strict=True):
-        z0, z1 = z - 0.5 * pitch_mm, z + 0.5 * pitch_mm
+    for piece, (z0, z1) in zip(region.pieces, region.slabs_mm, strict=True):
         boxes += [np.array([(a, z0), (b, z0), (b, z1), (a, z1)]) for a, b in cut_along(piece, axis, plane)]
     return boxes
 

@@ -65,7 +65,7 @@ def reaches_still(reaches: Mapping[str, Reach], part: Solid) -> Still:
     left = {text: reach for text, reach in reaches.items() if reach.leftovers}
     meshes = [_mesh(part)]
     for text, reach in left.items():
-        made = leftover_mesh(reach.leftovers, reach.pitch_mm)
+        made = leftover_mesh(reach.leftovers)
         entity = f"leftover/{entity_name(text)}"
         meshes.append(
             StillMesh(entity=entity, vertices_mm=made.vertices_mm, triangles=made.triangles, color=colors[text])

@@ -14,6 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.geometry.guards import guarded
 from twin.geometry.shapes import Shape, Shapes
 
 #: Neighbours compared at a time.
@@ -31,42 +32,55 @@ def arc_segments(radius_mm: float, chord_mm: float) -> int:
     return max(2, math.ceil(0.25 * math.pi / half))
 
 
-def convolved(
-    shapes: Shapes,
-    positions_mm: FloatArray,
-    planes_mm: FloatArray,
-    radii: Radii,
-    segments: int,
-    threads: int | None,
-    *,
-    edges: Shapes | None = None,
-) -> Shapes:
-    """Union, on every plane, of all sections inflated by the radius that belongs to their distance (eq. 1).
+class Convolution:
+    """Sections ready to be inflated by the radius that belongs to their distance, and united (eq. 1).
 
     Sections that a neighbour makes needless are left out, see `margins`: that changes nothing but the places of chords.
-
-    Args:
-        shapes: sections at ``positions_mm``, which increase.
-        radii: from heights above a plane to radii, NaN out of reach.
-        segments: segments a quarter circle.
-        threads: threads to work with, all cores if None.
-        edges: the sections' boundaries, where these are less than the polygons': without a frame that stands for
-            everything around.
     """
-    count = threads or os.cpu_count() or 1
-    empty = shapely.is_empty(shapes)
-    shapely.bounds(shapes)  # boxes are kept when first asked for, which threads must not do side by side
-    with ThreadPoolExecutor(max_workers=count) as pool:
-        up, down = margins(shapes, shapely.boundary(shapes) if edges is None else edges, pool)
 
-        def plane(at_mm: float) -> Shape:
-            radius = radii(positions_mm - at_mm)
-            wanted = needed(radius, up, down) & ~empty
-            return shapely.union_all(shapely.buffer(shapes[wanted], radius[wanted], quad_segs=segments))
+    def __init__(
+        self,
+        shapes: Shapes,
+        positions_mm: FloatArray,
+        radii: Radii,
+        radius_mm: float,
+        chord_mm: float,
+        *,
+        threads: int | None = None,
+        edges: Shapes | None = None,
+    ) -> None:
+        """Compare neighbours.
 
+        Args:
+            shapes: sections at ``positions_mm``, which increase.
+            positions_mm: shape (n,).
+            radii: from heights above a plane to radii, NaN out of reach.
+            radius_mm: the largest of these.
+            chord_mm: how far chords of the largest arcs may stand inside.
+            threads: threads to work with, all cores if None.
+            edges: the sections' boundaries, where these are less than the polygons': without a frame that stands for
+                everything around.
+        """
+        shapes = guarded(shapes, radius_mm)
+        self._shapes, self._positions, self._radii = shapes, positions_mm, radii
+        self._segments = arc_segments(radius_mm, chord_mm)
+        self._threads = threads or os.cpu_count() or 1
+        self._some = ~shapely.is_empty(shapes)
+        shapely.bounds(shapes)  # boxes are kept when first asked for, which threads must not do side by side
+        with ThreadPoolExecutor(max_workers=self._threads) as pool:
+            self._up, self._down = margins(shapes, shapely.boundary(shapes) if edges is None else edges, pool)
+
+    def on(self, planes_mm: FloatArray) -> Shapes:
+        """The union on every plane."""
         made = np.empty(len(planes_mm), dtype=object)
-        made[:] = list(pool.map(plane, planes_mm.tolist()))
-    return made
+        with ThreadPoolExecutor(max_workers=self._threads) as pool:
+            made[:] = list(pool.map(self._plane, planes_mm.tolist()))
+        return made
+
+    def _plane(self, at_mm: float) -> Shape:
+        radius = self._radii(self._positions - at_mm)
+        wanted = needed(radius, self._up, self._down) & self._some
+        return shapely.union_all(shapely.buffer(self._shapes[wanted], radius[wanted], quad_segs=self._segments))
 
 
 def margins(shapes: Shapes, edges: Shapes, pool: ThreadPoolExecutor) -> tuple[FloatArray, FloatArray]:

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-import shapely
 from scipy.integrate import quad
 from support import solids
+from support.facets import ring_in_facets
 
 from twin.arrays import FloatArray
 from twin.cam.element import StructuringElement
@@ -39,6 +39,11 @@ def profile() -> Any:
     return solids.torus_example().Profile(ring_mm=12.0, half_mm=24.0, thick_mm=1.0)
 
 
+def round_ring_mm3(p: Any) -> float:
+    """What a ball of 4 mm leaves in a fillet of 3 mm of the round part, in closed form."""
+    return volume_under_ball(4.0, p) - volume_under_ball(3.0, p)
+
+
 def volume_under_ball(radius: float, p: Any) -> float:
     """Between plate, the tube's inner side and a ball of this radius that touches both, turned about the axis.
 
@@ -66,11 +71,10 @@ def test_a_ball_of_4_mm_leaves_the_closed_forms_ring_in_the_inner_fillet_and_not
     reach = unmachinable(torus_part, StructuringElement.ball(4.0))
     (ring,) = reach.leftovers
     p = profile()
-    exact = (volume_under_ball(4.0, p) - volume_under_ball(3.0, p)) * ROUND
-    assert ring.volume_mm3 == pytest.approx(exact, rel=0.01)
+    assert ring.volume_mm3 == pytest.approx(round_ring_mm3(p) * ROUND, rel=0.006)
     foot, own = (p.fillet(r, -1)[0] for r in (4.0, 3.0))
-    # thickest on the line through both balls' centres; corners of the polygon about the axis lie a little deeper
-    assert ring.thickness_mm == pytest.approx(math.hypot(own - foot, 1.0) - 1.0, abs=0.006)
+    # thickest on the line through both balls' centres
+    assert ring.thickness_mm == pytest.approx(math.hypot(own - foot, 1.0) - 1.0, abs=0.002)
     # up to where the larger ball touches the tube; its thin ends fade below what slices can tell
     touch = p.ring_mm - (p.ring_mm - foot) * p.tube_mm / (p.tube_mm + 4.0)
     assert ring.high_mm[0] == pytest.approx(touch, abs=0.06)
@@ -82,27 +86,49 @@ def test_a_ball_of_4_mm_leaves_the_closed_forms_ring_in_the_inner_fillet_and_not
     assert innermost > foot - 0.06
 
 
-def closed_meridian_mm3(curve: FloatArray, ball: float) -> float:
-    """What a ball leaves inside of the tube of a part whose facets make this meridian: GEOS closes the polygon."""
-    inner, far = float(curve[:, 0].min()), 100.0
-    half = np.vstack(([(0.0, 0.0)], curve, [(far, 0.0), (far, -far), (0.0, -far)]))
-    whole = shapely.union(shapely.Polygon(half), shapely.Polygon(half * (-1.0, 1.0)))
-    closed = whole.buffer(ball, quad_segs=1024).buffer(-ball, quad_segs=1024)
-    left = shapely.intersection(shapely.difference(closed, whole), shapely.box(0.0, 0.0, inner + ball, far))
-    return sum(2.0 * math.pi * p.centroid.x * p.area for p in shapely.get_parts(left))
+def test_the_ring_on_the_examples_own_stl_is_what_its_facets_leave() -> None:
+    exact = ring_in_facets(4.0, 512, 160)
+    part = slice_part(solids.torus(), 0.05)
+    (ring,) = unmachinable(part, StructuringElement.ball(4.0)).leftovers
+    assert ring.volume_mm3 == pytest.approx(exact.volume_mm3, rel=0.001)
+    assert ring.volume_mm3 == pytest.approx(round_ring_mm3(solids.torus_example().PROFILE), rel=0.005)
+    assert ring.thickness_mm == pytest.approx(exact.thickness_mm, abs=0.0005)
+    np.testing.assert_allclose(ring.high_mm[:2], exact.touch_mm[0], atol=0.06)
+    assert ring.high_mm[2] == pytest.approx(exact.touch_mm[1], abs=0.1)
+    assert ring.low_mm[2] == pytest.approx(0.0, abs=1e-9)
+    innermost = min(np.hypot(*np.array(h.coords).T).min() for piece in ring.pieces for h in piece.interiors)
+    lowest = float(ring.planes_mm.min())
+    assert innermost == pytest.approx(math.sqrt(16.0 - (4.0 - lowest) ** 2) + exact.foot_mm, abs=0.001)
 
 
-def test_the_ring_on_the_examples_own_triangles() -> None:
-    example = solids.torus_example()
-    reach = unmachinable(part_of(example.torus(), 0.05), StructuringElement.ball(4.0))
-    (ring,) = reach.leftovers
-    p = example.PROFILE
-    # what an STL with so many facets leaves, and what the round part does
-    exact = closed_meridian_mm3(example.meridian(160), 4.0)
-    assert ring.volume_mm3 == pytest.approx(exact, rel=1e-3)
-    assert ring.volume_mm3 == pytest.approx(volume_under_ball(4.0, p) - volume_under_ball(3.0, p), rel=0.005)
-    foot, own = (p.fillet(r, -1)[0] for r in (4.0, 3.0))
-    assert ring.thickness_mm == pytest.approx(math.hypot(own - foot, 1.0) - 1.0, abs=0.004)
+def test_the_facets_of_the_examples_stl_leave_less_than_the_round_part_and_finer_ones_the_same() -> None:
+    exact = round_ring_mm3(solids.torus_example().PROFILE)
+    assert exact == pytest.approx(40.13, abs=0.005)
+    assert ring_in_facets(4.0, 512, 96).volume_mm3 == pytest.approx(0.9886 * exact, rel=1e-4)
+    assert ring_in_facets(4.0, 512, 160).volume_mm3 == pytest.approx(0.9960 * exact, rel=1e-4)
+    assert ring_in_facets(4.0, 4096, 4096).volume_mm3 == pytest.approx(exact, rel=1e-4)
+
+
+def half_size() -> Any:
+    return solids.torus_example().Profile(
+        ring_mm=9.0, tube_mm=3.0, outer_mm=2.0, inner_mm=1.5, half_mm=15.0, thick_mm=1.0
+    )
+
+
+@pytest.mark.parametrize("pitch", [0.08, 0.07, 0.06])
+def test_faces_may_lie_anywhere_between_slices(pitch: float) -> None:
+    part = part_of(solids.torus_example().torus(128, 96, half_size()), pitch)
+    (ring,) = unmachinable(part, StructuringElement.ball(2.0)).leftovers
+    assert ring.volume_mm3 == pytest.approx(ring_in_facets(2.0, 128, 96, half_size()).volume_mm3, rel=0.01)
+    assert ring.low_mm[2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_slices_that_run_along_the_ring_find_it_too() -> None:
+    part = part_of(solids.torus_example().torus(64, 48, half_size()), 0.2)
+    (ring,) = unmachinable(part, StructuringElement.ball(2.0), axis=0, thin_mm=0.05).leftovers
+    exact = ring_in_facets(2.0, 64, 48, half_size())
+    assert ring.volume_mm3 == pytest.approx(exact.volume_mm3, rel=0.02)
+    assert ring.thickness_mm == pytest.approx(exact.thickness_mm, abs=0.01)
 
 
 def test_a_ball_of_the_inner_fillet_finishes_the_part() -> None:
@@ -171,7 +197,7 @@ def test_leftovers_as_triangles_are_a_solid_of_the_same_volume() -> None:
         (unmachinable(part, StructuringElement.ball(2.0), axis=1), 1),
     ):
         assert found.axis == axis
-        mesh = leftover_mesh(found.leftovers, found.pitch_mm)
+        mesh = leftover_mesh(found.leftovers)
         made = solid(mesh.vertices_mm[mesh.triangles], "leftovers")
         assert made.volume_mm3 == pytest.approx(found.volume_mm3, rel=1e-3)
 

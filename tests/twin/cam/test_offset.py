@@ -134,9 +134,8 @@ def test_sections_left_out_change_nothing(seed: int) -> None:
     left_out = 0
     with ThreadPoolExecutor(2) as pool:
         up, down = convolution.margins(shapes, shapely.boundary(shapes), pool)
-    for plane, got in zip(
-        planes, convolution.convolved(shapes, at, planes, BALL.ball_radii_mm, segments, 2), strict=True
-    ):
+    united = convolution.Convolution(shapes, at, BALL.ball_radii_mm, RADIUS, (1.0 + 1e-9) * chord, threads=2)
+    for plane, got in zip(planes, united.on(planes), strict=True):
         radii = BALL.ball_radii_mm(at - plane)
         grown = [s.buffer(r, quad_segs=segments) for s, r in zip(shapes, radii, strict=True) if r >= 0.0]
         wanted = shapely.union_all(grown)
