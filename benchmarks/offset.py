@@ -43,7 +43,7 @@ PLACES_MM = 0.05
 FLOOR_MM = -10.0
 ROWS_MM = np.linspace(-HALF_MM, HALF_MM, 241)
 #: Grids of height maps, and pitches of slices that make no larger error at the same places.
-EQUAL_ERROR = {0.25: 0.2, 0.125: 0.125, 0.05: 0.08}
+EQUAL_ERROR = {0.25: 0.2, 0.125: 0.125, 0.05: 0.05}
 #: Points that opencamlib is asked for.
 ASKED = 400
 
