@@ -26,6 +26,8 @@ _ALIKE = 4.0
 _ASKED = 5
 #: Slope between two sections above which there is a wall between them.
 _CLIFF = 5.0
+#: Gaps between sections at either end of a flat rim where it is asked between sections, and places in each.
+_END_GAPS, _END_PLACES = 3, 4
 #: Part of a step by which pieces reach further, so that a tool that just touches a wall counts as touching it.
 _TIE = 1e-7
 #: Sections closer than this are taken for one, mm.
@@ -337,22 +339,48 @@ def _raise_ends(
     two: FloatArray,
     heights: FloatArray,
 ) -> None:
-    """The two points of a flat bottom that are farthest from the plane, over the part between the sections there."""
+    """The rim of a flat bottom where it runs nearly along the sections: at its ends, farthest from the plane.
+
+    There it turns far from one section to the next, so places on it between sections are asked, of the part between
+    these.
+    """
     for side in (-1.0, 1.0):
-        at = plane + side * radius
-        k = np.searchsorted(positions, at)
-        if k == 0 or k == len(positions):
-            continue
-        gap = positions[k] - positions[k - 1]
-        if gap < _SAME_MM:
-            continue
-        share = (at - positions[k - 1]) / gap
-        for j in range(2):
-            m = k - 1 + j
-            _profile_row(segments, segment_begins[m], segment_begins[m + 1], start, step, two[j])
-        for i in range(len(heights)):
-            if two[0, i] > -math.inf and abs(two[1, i] - two[0, i]) <= _CLIFF * gap:
-                heights[i] = max(heights[i], two[0, i] + share * (two[1, i] - two[0, i]))
+        outer = int(np.searchsorted(positions, plane + side * radius)) - (1 if side < 0.0 else 0)
+        for number in range(_END_GAPS):
+            k, inner = outer - int(side) * number, outer - int(side) * (number + 1)
+            if min(k, inner) < 0 or max(k, inner) >= len(positions) or abs(positions[k] - positions[inner]) < _SAME_MM:
+                continue
+            far = math.asin(min(1.0, side * (positions[k] - plane) / radius))
+            near = math.asin(max(-1.0, side * (positions[inner] - plane) / radius))
+            for i in range(0 if number == 0 else 1, _END_PLACES):
+                angle = far + (near - far) * i / _END_PLACES
+                at = plane + side * radius * math.sin(angle)
+                for turn in (-1.0, 1.0):
+                    begin = start + turn * radius * math.cos(angle)
+                    _raise_between(segments, segment_begins, positions, k, inner, at, begin, step, two, heights)
+
+
+@njit(cache=True, nogil=True)
+def _raise_between(
+    segments: FloatArray,
+    segment_begins: NDArray[np.int64],
+    positions: FloatArray,
+    k: int,
+    other: int,
+    at: float,
+    start: float,
+    step: float,
+    two: FloatArray,
+    heights: FloatArray,
+) -> None:
+    """Raise heights to the part between two sections, if there is no wall between these."""
+    _profile_row(segments, segment_begins[k], segment_begins[k + 1], start, step, two[0])
+    _profile_row(segments, segment_begins[other], segment_begins[other + 1], start, step, two[1])
+    gap = positions[other] - positions[k]
+    share = (at - positions[k]) / gap
+    for i in range(len(heights)):
+        if two[0, i] > -math.inf and abs(two[1, i] - two[0, i]) <= _CLIFF * abs(gap):
+            heights[i] = max(heights[i], two[0, i] + share * (two[1, i] - two[0, i]))
 
 
 @njit(cache=True, nogil=True)

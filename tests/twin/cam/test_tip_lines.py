@@ -46,7 +46,10 @@ def test_a_ball_at_50_um_is_within_5_um_and_nearly_always_within_1(torus_part: S
     assert np.mean(off <= 1.0) >= 0.999
 
 
-@pytest.mark.parametrize(("text", "most_um", "share"), [("flat 8", 20.0, 0.95), ("bull 8 r1", 7.0, 0.99)])
+@pytest.mark.parametrize(
+    ("text", "most_um", "share"),
+    [("flat 8", 4.0, 0.99), ("flat 3", 4.0, 0.99), ("bull 8 r1", 4.0, 0.99), ("bull 8 r0.3", 12.0, 0.98)],
+)
 def test_other_tools(torus_part: SlicedPart, text: str, most_um: float, share: float) -> None:
     off = np.abs(errors_um(torus_part, text, 1, ROWS))
     assert off.max() <= most_um
