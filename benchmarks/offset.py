@@ -29,9 +29,10 @@ from twin.cam.drop_cutter import DropCutter
 from twin.cam.element import StructuringElement
 from twin.cam.machinable import unmachinable
 from twin.cam.offset import inflate
+from twin.cam.polylines import Places
 from twin.cam.sections import slice_part
 from twin.cam.surface import Surface, surface_of_mesh
-from twin.cam.tip_lines import Places, Profiles, tip_heights, tip_lines
+from twin.cam.tip_lines import Profiles, tip_heights, tip_lines
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
 

@@ -1,10 +1,10 @@
-"""Whole scanning paths of the torus part: slice, rough, finish, write; the finishing path against the drop-cutter.
+"""Whole scanning paths of the torus part: slice, rough, finish, write; finishing paths against the drop-cutter.
 
     python -m benchmarks.paths [--pitches 0.25,0.125,0.05]
 
-Conditions are those of the tri-slice paper's Table 1. The finishing path is measured as it is written, thinned, with
-and without arcs, at places 0.02 mm apart along it: vertical distance from the exact drop-cutter's height on the same
-triangles.
+Conditions are those of the tri-slice paper's Table 1. Finishing paths are measured as they are written, thinned: from
+slices with and without arcs, and exact; at places 0.02 mm apart, vertically from the exact drop-cutter's height on the
+same triangles.
 """
 
 from __future__ import annotations
@@ -65,16 +65,19 @@ def at_pitch(pitch: float, stl: Path, cutter: DropCutter) -> dict[str, object]:
     done()
     finish = planned(part, pitch, FINISH)
     done()
+    exact = planned(part, pitch, FINISH | {"exact": True})
+    done()
     lines = write_nc(
         stl.with_suffix(".nc"), [Operation(path=p, spindle_rpm=3600.0) for p in (rough, finish)], NcOptions()
     )
     done()
-    stages = ("slice", "rough", "finish", "write")
+    stages = ("slice", "rough", "finish", "exact_finish", "write")
     return {
         "wall_s": dict(zip(stages, np.diff(wall).round(3).tolist(), strict=True)),
         "cpu_s": dict(zip(stages, np.diff(cpu).round(3).tolist(), strict=True)),
         "lines": lines,
         "straight": errors(finish, cutter),
+        "exact": errors(exact, cutter),
         "arcs_1_um": errors(planned(part, pitch, FINISH | {"arcs_mm": 0.001}), cutter),
     }
 

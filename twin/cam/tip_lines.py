@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.cam import tip_line_kernels as kernels
 from twin.cam.element import StructuringElement
+from twin.cam.polylines import FINER, Places, polylines
 from twin.cam.sections import Sections
 from twin.geometry.clip import DECIMALS, LEAST_AREA_MM2
 from twin.geometry.region import Region, signed_area_mm2
@@ -25,39 +25,8 @@ from twin.geometry.threads import in_parts
 
 #: Lines, and cells to refine, that are not worth several threads.
 _FEW_PLANES, _FEW_CELLS = 4, 64
-#: A rough cell is cut into this many.
-_FINER = 16
 #: Distance of the places of `tip_regions`, in square roots of chord times radius: an arc's own chord would be sqrt(8).
 _PLACES = 2.0
-#: Change of slope that makes an inner corner, and slope that makes a wall.
-_CORNER = 0.02
-_WALL = 50.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Places:
-    """Evenly spaced places along a line.
-
-    Attributes:
-        start_mm: the first.
-        step_mm: their distance, above 0.
-        count: how many, at least 2.
-    """
-
-    start_mm: float
-    step_mm: float
-    count: int
-
-    @classmethod
-    def between(cls, low_mm: float, high_mm: float, step_mm: float) -> Places:
-        """Both ends included, no farther apart than a step."""
-        gaps = max(1, math.ceil((high_mm - low_mm) / step_mm - 1e-9))
-        return cls(start_mm=low_mm, step_mm=(high_mm - low_mm) / gaps, count=gaps + 1)
-
-    @property
-    def at_mm(self) -> FloatArray:
-        """The places, shape (count,)."""
-        return np.asarray(self.start_mm + self.step_mm * np.arange(self.count, dtype=np.float64))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -208,22 +177,12 @@ def tip_lines(
     """
     grown = element.with_allowance(allowance_mm)
     heights, best = _heights(profiles, grown, planes_mm, places, smooth, threads)
-    heights = np.maximum(heights, floor_mm)
-    rows, cells = np.nonzero(_rough(heights, places.step_mm, chord_mm))
-    touched = np.stack((best[rows, cells], best[rows, cells + 1]), axis=1)
-    finer = _refined(profiles, grown, np.asarray(planes_mm)[rows], places, cells, touched, smooth, threads)
-    finer = np.maximum(finer, floor_mm)
-    inner = places.step_mm / _FINER * np.arange(_FINER)
-    lines = []
-    bounds = np.searchsorted(rows, np.arange(len(heights) + 1))
-    at = places.at_mm
-    for p, (first, last) in enumerate(pairwise(bounds.tolist())):
-        mine = cells[first:last]
-        u = np.concatenate((np.delete(at, mine), (at[mine, None] + inner).ravel()))
-        z = np.concatenate((np.delete(heights[p], mine), finer[first:last, :_FINER].ravel()))
-        order = np.argsort(u, kind="stable")
-        lines.append(_with_walls(_with_corners(np.column_stack((u[order], z[order])))))
-    return lines
+
+    def within(rows: NDArray[np.int64], cells: NDArray[np.int64]) -> FloatArray:
+        touched = np.stack((best[rows, cells], best[rows, cells + 1]), axis=1)
+        return _refined(profiles, grown, np.asarray(planes_mm)[rows], places, cells, touched, smooth, threads)
+
+    return polylines(places, heights, within, floor_mm=floor_mm, chord_mm=chord_mm)
 
 
 def tip_regions(
@@ -263,15 +222,6 @@ def _below(line: FloatArray, floor_mm: float) -> list[FloatArray]:
     return rings
 
 
-def _rough(heights: FloatArray, step_mm: float, chord_mm: float) -> NDArray[np.bool_]:
-    """Cells whose chords may stand off by more than a tolerance, by the second differences at their ends."""
-    slope = np.abs(np.diff(heights, axis=1)) / step_mm
-    bend = np.zeros_like(heights)
-    least = np.minimum(slope[:, 1:], slope[:, :-1])
-    bend[:, 1:-1] = np.abs(np.diff(heights, 2, axis=1)) / np.sqrt(1.0 + least**2)
-    return np.asarray(np.maximum(bend[:, 1:], bend[:, :-1]) > 8.0 * chord_mm)
-
-
 def _refined(
     profiles: Profiles,
     element: StructuringElement,
@@ -282,9 +232,9 @@ def _refined(
     smooth: bool,
     threads: int | None,
 ) -> FloatArray:
-    """Heights within cells, shape (cells, _FINER + 1)."""
+    """Heights within cells, shape (cells, FINER + 1)."""
     starts = np.column_stack((planes_mm, places.at_mm[cells]))
-    heights = np.empty((len(cells), _FINER + 1))
+    heights = np.empty((len(cells), FINER + 1))
 
     def part(first: int, last: int) -> None:
         kernels.refine(
@@ -293,33 +243,10 @@ def _refined(
             touched[first:last],
             element.disc_mm,
             element.corner_mm,
-            places.step_mm / _FINER,
+            places.step_mm / FINER,
             smooth,
             heights[first:last],
         )
 
     in_parts(part, len(cells), threads=threads, few=_FEW_CELLS)
     return heights + element.drop_mm
-
-
-def _with_corners(line: FloatArray) -> FloatArray:
-    """A line with the points where an inner corner lies between two of its points: where its sides, drawn on, meet."""
-    u, z = line[:, 0], line[:, 1]
-    slope = np.diff(z) / np.diff(u)
-    left, right, width = slope[:-2], slope[2:], np.diff(u)[1:-1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ahead = (z[2:-1] - z[1:-2] - right * width) / (left - right)
-    found = np.flatnonzero((right - left > _CORNER) & (ahead > 0.0) & (ahead < width))
-    corners = np.column_stack((u[found + 1] + ahead[found], z[found + 1] + left[found] * ahead[found]))
-    return np.insert(line, found + 2, corners, axis=0)
-
-
-def _with_walls(line: FloatArray) -> FloatArray:
-    """A line that goes upright where it is nearly so, on the side away from the wall."""
-    step = np.diff(line, axis=0)
-    steep = np.flatnonzero(np.abs(step[:, 1]) > _WALL * step[:, 0])
-    down = step[steep, 1] < 0.0
-    corners = np.column_stack(
-        (np.where(down, line[steep + 1, 0], line[steep, 0]), np.where(down, line[steep, 1], line[steep + 1, 1]))
-    )
-    return np.insert(line, steep + 1, corners, axis=0)

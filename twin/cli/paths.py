@@ -53,6 +53,9 @@ def paths(
     settings: Annotated[Path | None, _option("TOML file with any of the settings.", metavar="FILE")] = None,
     pitch: Annotated[float | None, _option("Distance of the part's slices, mm (0.1).")] = None,
     tolerance: Annotated[float | None, _option("Accuracy wanted, mm (0.02).")] = None,
+    exact: Annotated[
+        bool | None, _option("scan: rows from the triangles, not from slices.", "--exact/--slices")
+    ] = None,
     stepover: Annotated[float | None, _option("scan: distance of the rows, mm (0.5).")] = None,
     allowance: Annotated[float | None, _option("Material to leave on the part, mm (0).")] = None,
     layers: Annotated[int | None, _option("Layers (1); contour: 0 for as many as clear the stock.")] = None,
@@ -105,6 +108,7 @@ def paths(
         "tool": tool,
         "pitch_mm": pitch,
         "tolerance_mm": tolerance,
+        "exact": exact,
         "stepover_mm": stepover,
         "allowance_mm": allowance,
         "layers": layers,

@@ -86,6 +86,7 @@ def planned(
         warn(
             f"pitch_mm = {settings.pitch_mm:g} may be too coarse: details between slices are known to {bound:.3g} mm, "
             f"more than tolerance_mm = {settings.tolerance_mm:g}"
+            + ("; --exact makes rows from the triangles instead" if strategy == "scan" else "")
         )
     return Planned(settings=settings, ground=ground, path=path, wall_time_s=time.perf_counter() - begin)
 

@@ -19,8 +19,11 @@ _ACROSS = 1.0 - 1e-9
 def pitch_bound_mm(settings: PathSettings, ground: Ground) -> float:
     """See `sag_mm`, for the family of slices that a path is made from.
 
-    A level of a flat tool needs nothing but the section at its own height, which is exact.
+    A level of a flat tool needs nothing but the section at its own height, which is exact; rows of the drop-cutter need
+    no slices.
     """
+    if settings.exact:
+        return 0.0
     if settings.strategy == "contour" and ground.tool.corner_mm == 0.0:
         return 0.0
     axis = ACROSS[settings.direction] if settings.strategy == "scan" else 2

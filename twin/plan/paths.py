@@ -15,14 +15,16 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.cam.arc_fit import FitOptions, Side, fit_path
 from twin.cam.contour import ContourOptions, LevelWay, contour_passes, level_heights, levels_of
+from twin.cam.drop_lines import drop_lines
 from twin.cam.element import StructuringElement
 from twin.cam.linking import LinkOptions, Pass, Way, link
 from twin.cam.offset import inflated_planes
+from twin.cam.polylines import Places
 from twin.cam.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
 from twin.cam.sections import Sections, SlicedPart, slice_part
 from twin.cam.surface import Surface, surface_of_mesh
 from twin.cam.surface_way import SurfaceWay
-from twin.cam.tip_lines import Places, Profiles, tip_lines
+from twin.cam.tip_lines import Profiles, tip_lines
 from twin.cam.to_nc import describe
 from twin.cam.toolpath import ToolPath
 from twin.errors import ToolPathError
@@ -146,26 +148,8 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
     low, high = ground.region_mm + ground.overhang_mm * np.array([[-1.0], [1.0]])
     at = row_positions(float(low[across]), float(high[across]), settings.stepover_mm)
     report("profiles", 0.0)
-    profiles = Profiles.of(ground.part.sections(ACROSS[settings.direction]))
     apart = max(settings.pitch_mm, _PLACES_APART * ground.tool.corner_mm)
     places = Places.between(float(low[along]), float(high[along]), apart)
-    element = StructuringElement.tool(ground.tool)
-    chord = max(_CHORD_MM, _CHORD_ALLOWANCE * settings.allowance_mm)
-    passes: list[Pass] = []
-    for layer in reversed(range(settings.layers)):
-        report("rows", 1.0 - (layer + 1) / settings.layers)
-        left = settings.allowance_mm + layer * settings.axial_depth_mm
-        floor = ground.floor_mm + left
-        lines = tip_lines(profiles, element, at, places, floor, allowance_mm=left, chord_mm=chord)
-        rows = Rows(direction=settings.direction, at_mm=at, lines_mm=lines)
-        options = ScanOptions(
-            top_mm=float(ground.stock_mm[1, 2]) + _AIR_MM,
-            zigzag=settings.zigzag,
-            climb=settings.climb,
-            layer=layer,
-            approach_mm=_approach(ground, along, float(low[along]), float(high[along]), settings.clearance_mm),
-        )
-        passes += scan_passes(rows, options)
     way = SurfaceWay(
         lambda: _surface(ground.part.mesh),
         ground.tool,
@@ -174,9 +158,40 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
         floor_mm=ground.floor_mm,
         top_mm=float(ground.stock_mm[1, 2]),
     )
+    lines_of = _rows(settings, ground, way, at, places)
+    passes: list[Pass] = []
+    for layer in reversed(range(settings.layers)):
+        report("rows", 1.0 - (layer + 1) / settings.layers)
+        left = settings.allowance_mm + layer * settings.axial_depth_mm
+        rows = Rows(direction=settings.direction, at_mm=at, lines_mm=lines_of(left))
+        options = ScanOptions(
+            top_mm=float(ground.stock_mm[1, 2]) + _AIR_MM,
+            zigzag=settings.zigzag,
+            climb=settings.climb,
+            layer=layer,
+            approach_mm=_approach(ground, along, float(low[along]), float(high[along]), settings.clearance_mm),
+        )
+        passes += scan_passes(rows, options)
     if settings.remaining_mm is not None and settings.layers == 1:
         passes = [replace(p, top_mm=way.clear_z_mm(p.points_mm[0], p.points_mm[0])) for p in passes]
     return tuple(passes), way
+
+
+def _rows(
+    settings: PathSettings, ground: Ground, way: SurfaceWay, at: FloatArray, places: Places
+) -> Callable[[float], list[FloatArray]]:
+    """Makes the rows' lines from the material to be left: from slices, or from the triangles themselves."""
+    chord = max(_CHORD_MM, _CHORD_ALLOWANCE * settings.allowance_mm)
+    if settings.exact:
+        along = 0 if settings.direction == "x" else 1
+        return lambda left: drop_lines(
+            lambda xy: way.lowest_mm(xy, left), along, at, places, floor_mm=ground.floor_mm + left, chord_mm=chord
+        )
+    profiles = Profiles.of(ground.part.sections(ACROSS[settings.direction]))
+    element = StructuringElement.tool(ground.tool)
+    return lambda left: tip_lines(
+        profiles, element, at, places, ground.floor_mm + left, allowance_mm=left, chord_mm=chord
+    )
 
 
 def _surface(mesh: Solid) -> Surface:

@@ -25,6 +25,7 @@ class PathSettings(BaseModel):
     tool: str = Field(description="tool, as 'ball 8', 'flat 10', 'bull 12 r2'")
     pitch_mm: float = Field(default=0.1, gt=0.0, description="distance of the part's slices")
     tolerance_mm: float = Field(default=0.02, gt=0.0, description="accuracy wanted; a pitch too coarse for it is told")
+    exact: bool = Field(default=False, description="scan: rows from the triangles, by drop-cutter, not from slices")
     stepover_mm: float = Field(default=0.5, gt=0.0, description="scan: distance of the rows")
     allowance_mm: float = Field(default=0.0, ge=0.0, description="material to leave on the part")
     layers: int = Field(default=1, ge=0, description="layers of roughing; contour: 0 for as many as clear the stock")
@@ -80,6 +81,8 @@ class PathSettings(BaseModel):
         for name, box in (("region_mm", self.region_mm), ("stock_mm", self.stock_mm)):
             if box is not None and not all(a < b for a, b in zip(box, box[len(box) // 2 :], strict=False)):
                 raise ValueError(f"{name} must have its lower corner first, got {list(box)}")
+        if self.strategy == "contour" and self.exact:
+            raise ValueError("exact is for scans; a contour is made from slices")
         if self.strategy == "scan" and self.layers == 0:
             raise ValueError("layers must be at least 1 for a scan, got 0")
         if self.strategy == "scan" and self.stepover_mm < self.thin_mm:

@@ -9,9 +9,10 @@ from support import solids
 from twin.arrays import FloatArray
 from twin.cam.drop_cutter import DropCutter
 from twin.cam.element import StructuringElement
+from twin.cam.polylines import Places
 from twin.cam.sections import Sections, SlicedPart, slice_part
 from twin.cam.surface import surface_of_mesh
-from twin.cam.tip_lines import Places, Profiles, tip_heights, tip_lines
+from twin.cam.tip_lines import Profiles, tip_heights, tip_lines
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import Solid, solid
 

@@ -17,7 +17,7 @@ from twin.cam.to_nc import NcOptions, Operation, write_nc
 from twin.cam.toolpath import MoveKind, ToolPath
 from twin.errors import StockError, ToolError, ToolPathError
 from twin.job import load_job
-from twin.plan.accuracy import sag_mm
+from twin.plan.accuracy import pitch_bound_mm, sag_mm
 from twin.plan.paths import Ground, plan, prepare
 from twin.plan.replay_job import replay_tables, write_replay_job
 from twin.plan.settings import PathSettings, read_settings, settings_of
@@ -65,6 +65,53 @@ def test_rows_over_a_slope_are_those_of_the_formula() -> None:
     assert on[:, 2] == pytest.approx(wanted, abs=1e-3)
     floor = points[points[:, 0] < 4.0]
     assert floor[:, 2] == pytest.approx(0.0, abs=1e-4)
+
+
+#: A wall of 6 mm with a draft of 3 degrees, along the rows: slices hardly know it.
+DRAFT = [(0.0, -2.0), (12.0, -2.0), (12.0, 6.0), (6.0 + 6.0 * math.tan(math.radians(3.0)), 6.0), (6.0, 0.0), (0.0, 0.0)]
+
+
+@pytest.mark.parametrize("tool", ["ball 4", "flat 4", "bull 4 r0.5", "taper 3 r1 a2"])
+def test_exact_rows_are_the_drop_cutters(tool: str) -> None:
+    for part in (prism(DRAFT, 0.0, 6.0), small_torus()):
+        path, ground = made(part, strategy="scan", stepover_mm=0.7, direction="y", tool=tool, exact=True)
+        cutter = DropCutter(part.vertices_mm[part.triangles], parse_tool(tool), floor_mm=ground.floor_mm)
+        lines = [m.chords_mm(1e-4) for m in path.of_kind(MoveKind.CUT)]
+        for points in (np.concatenate(lines), np.concatenate([0.5 * (ln[1:] + ln[:-1]) for ln in lines])):
+            # chords 0.5 um, points left out 0.2 um, corners drawn on; beside walls as much to a side
+            near = np.array([cutter.drop(points[:, :2] + (0.0, aside)) for aside in (-0.002, 0.0, 0.002)])
+            assert (points[:, 2] - near.min(axis=0)).min() > -0.002
+            assert (points[:, 2] - near.max(axis=0)).max() < 0.002
+            assert np.mean(np.abs(points[:, 2] - near[1]) < 0.001) > 0.99
+
+
+def test_exact_rows_leave_the_allowance() -> None:
+    part = small_torus()
+    path, _ = made(part, strategy="scan", stepover_mm=0.7, tool="ball 4", exact=True, allowance_mm=0.3, layers=2)
+    points = np.concatenate([m.points_mm for m in path.of_kind(MoveKind.CUT)])
+    # the tip of a ball that is larger by the allowance is lower by it
+    cutter = DropCutter(part.vertices_mm[part.triangles], parse_tool("ball 4.6"))
+    above = points[:, 2] - cutter.drop(points[:, :2]) - 0.3
+    assert above.min() > -0.02
+    assert np.mean(np.abs(above) < 0.02) > 0.3
+
+
+def test_rows_of_slices_beside_a_drafted_wall_are_as_good_as_their_bound_and_no_better() -> None:
+    part = prism(DRAFT, 0.0, 6.0)
+    cutter = DropCutter(part.vertices_mm[part.triangles], parse_tool("ball 4"))
+    off = {}
+    for exact in (False, True):
+        settings = {"strategy": "scan", "stepover_mm": 0.13, "direction": "y", "exact": exact}
+        path, ground = made(part, **settings)
+        points = np.concatenate([m.points_mm for m in path.of_kind(MoveKind.CUT)])
+        aside = np.linspace(-0.25, 0.25, 251)
+        lower = np.array([points[:, 2] >= cutter.drop(points[:, :2] + (a, 0.0)) - 3e-3 for a in aside])
+        # how far the tip must go away from the wall, towards -x, to be free
+        off[exact] = float(np.where(lower, np.abs(aside)[:, None], np.inf).min(axis=0).max())
+        bound = pitch_bound_mm(settings_of({"tool": "ball 4", "pitch_mm": 0.2, **settings}, "test"), ground)
+        assert off[exact] <= bound if bound else off[exact] == 0.0
+    assert off[True] == 0.0
+    assert off[False] > 0.01
 
 
 @pytest.mark.parametrize(("direction", "stepover"), [("x", 0.8), ("y", 0.8)])
