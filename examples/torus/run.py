@@ -130,7 +130,8 @@ def program(fine: Fineness, stl: Path, out: Path) -> Path:
     lines = write_nc(out / "torus.nc", operations, options)
     print(f"{lines} lines in {out / 'torus.nc'}")
     tables = replay_tables(out / "torus.nc", operations, options, ground.stock_mm, fine.replay_pitch, out)
-    tables["simulation"]["step_mm"] = fine.replay_step
+    # 100 minutes of cutting at 1 degree would fill 13 GB
+    tables["simulation"] |= {"step_mm": fine.replay_step, "angle_step_deg": 5.0}
     write_replay_job(out / "job.toml", tables | {"cutting": CUTTING}, "Replays the torus example")
     for name, one in (("rough", rough), ("finish", finish)):
         plot_path(nc_events([one], options), out / f"{name}.png", title=one.path.name)
