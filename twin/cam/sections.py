@@ -113,6 +113,11 @@ def _beside_faces(mesh: Solid, axis: int, low: FloatArray, high: FloatArray, inw
     return _cut(mesh, axis, cuts[order], np.concatenate((low, high))[order])
 
 
+def cut_sections(mesh: Solid, axis: int, positions_mm: FloatArray) -> Sections:
+    """Sections at increasing positions."""
+    return _cut(mesh, axis, positions_mm, positions_mm)
+
+
 def _cut(mesh: Solid, axis: int, cuts_mm: FloatArray, positions_mm: FloatArray) -> Sections:
     """Sections at increasing cuts, which stand for other positions close by."""
     u, v = PLANE_AXES[axis]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from twin.cam.scan import ACROSS
+from twin.cam.sections import Sections
+from twin.cam.steep_sections import across_axis, gaps_of, with_steep_sections
 from twin.plan.paths import Ground
 from twin.plan.settings import PathSettings
 from twin.tools.shape import ToolShape
@@ -12,41 +14,36 @@ from twin.workpiece.from_mesh import Solid
 
 #: Share of the surface's area that the bound is for.
 _SHARE = 0.99
-#: A face lies across the slices' axis, and is known exactly, where its normal has this component along it.
-_ACROSS = 1.0 - 1e-9
 
 
 def pitch_bound_mm(settings: PathSettings, ground: Ground) -> float:
-    """See `sag_mm`, for the family of slices that a path is made from.
+    """See `sag_mm`, for the sections that a path is made from.
 
     A level of a flat tool needs nothing but the section at its own height, which is exact; rows of the drop-cutter need
     no slices.
     """
-    if settings.exact:
+    if settings.exact or (settings.strategy == "contour" and ground.tool.corner_mm == 0.0):
         return 0.0
-    if settings.strategy == "contour" and ground.tool.corner_mm == 0.0:
-        return 0.0
-    axis = ACROSS[settings.direction] if settings.strategy == "scan" else 2
-    return sag_mm(ground.part.mesh, ground.tool, float(ground.part.slices.pitch_mm[axis]), axis)
+    scan = settings.strategy == "scan"
+    sections = with_steep_sections(ground.part, ACROSS[settings.direction]) if scan else ground.part.sections(2)
+    return sag_mm(ground.part.mesh, ground.tool, sections)
 
 
-def sag_mm(part: Solid, tool: ToolShape, pitch_mm: float, axis: int) -> float:
-    """How far a tool may sink between two slices, for 99 % of the surface that does not lie across the axis.
+def sag_mm(part: Solid, tool: ToolShape, sections: Sections) -> float:
+    """How far a tool may sink between two sections, for 99 % of the surface that does not lie across their axis.
 
-    Slices meet a face whose normal has the component n along their axis at distances s = pitch / sqrt(1 - n^2) along
-    the face. A tool of radius r that rests on lines so far apart sinks in between by r - sqrt(r^2 - s^2 / 4), and never
-    by more than pitch * n, for the next slice behind the place is at most a pitch away along the axis.
+    Sections d apart meet a face at an angle a to them at distances s = d / sin a along the face. A tool of radius r
+    that rests on lines so far apart sinks in between by r - sqrt(r^2 - s^2 / 4), and never by more than d cos a, for
+    the next section behind the place is at most d away along the axis.
     """
-    a, b, c = (part.vertices_mm[part.triangles[:, i]] for i in range(3))
-    cross = np.cross(b - a, c - a)
-    size = np.linalg.norm(cross, axis=1)
-    along = np.abs(cross[:, axis]) / np.where(size > 0.0, size, 1.0)
-    used = (along < _ACROSS) & (size > 0.0)
-    if not used.any():
+    which, sine, cross = across_axis(part, sections.axis)
+    if len(which) == 0:
         return 0.0
+    gaps = np.concatenate(([0.0], np.diff(sections.positions_mm), [0.0, 0.0]))
+    widest = np.maximum.reduceat(gaps, np.column_stack(gaps_of(part, which, sections)).ravel())[::2]
     radius = tool.corner_mm or tool.nominal_radius_mm
-    apart = np.minimum(pitch_mm / np.sqrt(1.0 - along[used] ** 2), 2.0 * radius)
-    sag = np.minimum(radius - np.sqrt(radius**2 - 0.25 * apart**2), pitch_mm * along[used])
+    apart = np.minimum(widest / sine, 2.0 * radius)
+    sag = np.minimum(radius - np.sqrt(radius**2 - 0.25 * apart**2), widest * np.sqrt(1.0 - sine**2))
     order = np.argsort(sag)
-    grown = np.cumsum(size[used][order])
+    grown = np.cumsum(np.linalg.norm(cross, axis=1)[order])
     return float(sag[order][np.searchsorted(grown, _SHARE * grown[-1])])

@@ -22,6 +22,7 @@ from twin.cam.offset import inflated_planes
 from twin.cam.polylines import Places
 from twin.cam.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
 from twin.cam.sections import Sections, SlicedPart, slice_part
+from twin.cam.steep_sections import with_steep_sections
 from twin.cam.surface import Surface, surface_of_mesh
 from twin.cam.surface_way import SurfaceWay
 from twin.cam.tip_lines import Profiles, tip_lines
@@ -187,7 +188,7 @@ def _rows(
         return lambda left: drop_lines(
             lambda xy: way.lowest_mm(xy, left), along, at, places, floor_mm=ground.floor_mm + left, chord_mm=chord
         )
-    profiles = Profiles.of(ground.part.sections(ACROSS[settings.direction]))
+    profiles = Profiles.of(with_steep_sections(ground.part, ACROSS[settings.direction]))
     element = StructuringElement.tool(ground.tool)
     return lambda left: tip_lines(
         profiles, element, at, places, ground.floor_mm + left, allowance_mm=left, chord_mm=chord
