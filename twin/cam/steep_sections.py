@@ -1,4 +1,4 @@
-"""More sections where a part's surface runs nearly along them: walls with a draft, flanks, sides of bosses.
+"""More sections where a part's surface runs nearly along them: walls with a draft, crests, flat tops.
 
 Even slices meet a surface at an angle a to them at distances pitch / sin a along the surface, which grow without limit
 as the surface turns along the slices. There the pitch is made smaller, so that they stay within a few pitches.
@@ -22,7 +22,7 @@ _ACROSS = 1.0 - 1e-9
 
 
 def with_steep_sections(part: SlicedPart, axis: int) -> Sections:
-    """A part's sections across x or y with more of them where its upper surface runs along them.
+    """A part's sections across an axis with more of them where its upper surface runs along them.
 
     No more are added than there are even slices: if these would not do, the pitch is less small everywhere.
     """

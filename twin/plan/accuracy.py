@@ -24,9 +24,8 @@ def pitch_bound_mm(settings: PathSettings, ground: Ground) -> float:
     """
     if settings.exact or (settings.strategy == "contour" and ground.tool.corner_mm == 0.0):
         return 0.0
-    scan = settings.strategy == "scan"
-    sections = with_steep_sections(ground.part, ACROSS[settings.direction]) if scan else ground.part.sections(2)
-    return sag_mm(ground.part.mesh, ground.tool, sections)
+    axis = ACROSS[settings.direction] if settings.strategy == "scan" else 2
+    return sag_mm(ground.part.mesh, ground.tool, with_steep_sections(ground.part, axis))
 
 
 def sag_mm(part: Solid, tool: ToolShape, sections: Sections) -> float:

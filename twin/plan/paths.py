@@ -218,7 +218,7 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
     heights = level_heights(ground.floor_mm + settings.allowance_mm, top, settings.axial_depth_mm)
     element = StructuringElement.tool(ground.tool).with_allowance(settings.allowance_mm)
     at = heights[::-1] + _LIFT_MM
-    regions = _inflated(settings, _sections_with(ground.part, at), element, at, report)[::-1]
+    regions = _inflated(settings, _sections_with(ground.part, element, at), element, at, report)[::-1]
     levels = levels_of(heights, regions)
     chord = _CHORD_PITCHES * settings.pitch_mm
     window = grown(box_area(*ground.region_mm), ground.overhang_mm, chord)
@@ -235,11 +235,12 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
     return contour_passes(levels, options), LevelWay(levels, window, top)
 
 
-def _sections_with(part: SlicedPart, at: FloatArray) -> Sections:
+def _sections_with(part: SlicedPart, element: StructuringElement, at: FloatArray) -> Sections:
     """The part's level sections, and those at the levels themselves: a flat bottom meets nothing lower."""
+    own = with_steep_sections(part, 2) if element.corner_mm > 0.0 else part.sections(2)
     mesh = part.mesh
     regions = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (2, 0, 1), at)
-    return part.sections(2).joined(Sections(axis=2, positions_mm=at, regions=regions))
+    return own.joined(Sections(axis=2, positions_mm=at, regions=regions))
 
 
 def _inflated(
