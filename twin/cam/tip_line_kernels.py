@@ -350,6 +350,8 @@ def _raise_ends(
             k, inner = outer - int(side) * number, outer - int(side) * (number + 1)
             if min(k, inner) < 0 or max(k, inner) >= len(positions) or abs(positions[k] - positions[inner]) < _SAME_MM:
                 continue
+            if side * (positions[k] - plane) <= -radius:
+                break
             far = math.asin(min(1.0, side * (positions[k] - plane) / radius))
             near = math.asin(max(-1.0, side * (positions[inner] - plane) / radius))
             for i in range(0 if number == 0 else 1, _END_PLACES):

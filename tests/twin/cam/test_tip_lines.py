@@ -63,6 +63,20 @@ def test_without_interpolation_heights_are_never_too_large(torus_part: SlicedPar
     assert off.max() < 0.03
 
 
+def test_a_flat_tool_narrower_than_the_pitch_stays_within_a_pitch_of_the_surface() -> None:
+    part = slice_part(solids.torus(64, 24), 1.0)
+    rows, places = np.arange(-28.0, 28.0, 0.3), Places.between(-28.0, 28.0, 0.3)
+    heights = tip_heights(Profiles.of(part.sections(1)), StructuringElement.tool(parse_tool("flat 1")), rows, places)
+    across, along = np.meshgrid(rows, places.at_mm, indexing="ij")
+    points = np.column_stack((along.ravel(), across.ravel()))
+    shifts = np.array([(0.0, d) for d in np.linspace(-1.0, 1.0, 9)])
+    near = np.array([exact(part.mesh, "flat 1", points + shift, -20.0) for shift in shifts])
+    found = np.isfinite(heights.ravel())
+    assert found.mean() > 0.5
+    assert np.all((heights.ravel() >= near.min(axis=0) - 0.05)[found])
+    assert np.all((heights.ravel() <= near.max(axis=0) + 0.05)[found])
+
+
 def test_a_coarser_pitch_is_worse_by_its_square() -> None:
     worst = []
     for pitch in (0.4, 0.2):
