@@ -45,14 +45,15 @@ def across_axis(mesh: Solid, axis: int) -> tuple[NDArray[np.int64], FloatArray, 
 
     Returns:
         Their numbers, shape (n,); the sine of the angle between each and planes across the axis; their normals' unit
-        vectors times twice their areas, shape (n, 3).
+        vectors times twice their areas, shape (3, n).
     """
-    a, b, c = (mesh.vertices_mm[mesh.triangles[:, i]] for i in range(3))
-    cross = np.cross(b - a, c - a)
-    size = np.linalg.norm(cross, axis=1)
-    along = np.abs(cross[:, axis]) / np.where(size > 0.0, size, 1.0)
+    a, b, c = (mesh.vertices_mm.T[:, mesh.triangles[:, i]] for i in range(3))
+    (ux, uy, uz), (vx, vy, vz) = b - a, c - a
+    cross = np.stack((uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx))
+    size = np.sqrt(np.sum(cross**2, axis=0))
+    along = np.abs(cross[axis]) / np.where(size > 0.0, size, 1.0)
     which = np.flatnonzero((size > 0.0) & (along < _ACROSS))
-    return which, np.sqrt(1.0 - along[which] ** 2), cross[which]
+    return which, np.sqrt(1.0 - along[which] ** 2), cross[:, which]
 
 
 def gaps_of(mesh: Solid, which: NDArray[np.int64], sections: Sections) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -69,7 +70,7 @@ def gaps_of(mesh: Solid, which: NDArray[np.int64], sections: Sections) -> tuple[
 def _wanted_mm(mesh: Solid, sections: Sections, pitch_mm: float) -> FloatArray:
     """Pitch wanted in every gap between two sections; inf where any will do."""
     which, sine, cross = across_axis(mesh, sections.axis)
-    steep = (cross[:, 2] > 0.0) & (sine < 1.0 / _ALONG)
+    steep = (cross[2] > 0.0) & (sine < 1.0 / _ALONG)
     first, last = gaps_of(mesh, which[steep], sections)
     counts = last - first
     gap = np.repeat(first, counts) + np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)

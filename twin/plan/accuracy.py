@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.cam.scan import ACROSS
 from twin.cam.sections import Sections
-from twin.cam.steep_sections import across_axis, gaps_of, with_steep_sections
+from twin.cam.steep_sections import across_axis, gaps_of
 from twin.plan.paths import Ground
 from twin.plan.settings import PathSettings
 from twin.tools.shape import ToolShape
@@ -24,8 +23,7 @@ def pitch_bound_mm(settings: PathSettings, ground: Ground) -> float:
     """
     if settings.exact or (settings.strategy == "contour" and ground.tool.corner_mm == 0.0):
         return 0.0
-    axis = ACROSS[settings.direction] if settings.strategy == "scan" else 2
-    return sag_mm(ground.part.mesh, ground.tool, with_steep_sections(ground.part, axis))
+    return sag_mm(ground.part.mesh, ground.tool, ground.sections)
 
 
 def sag_mm(part: Solid, tool: ToolShape, sections: Sections) -> float:
@@ -44,5 +42,5 @@ def sag_mm(part: Solid, tool: ToolShape, sections: Sections) -> float:
     apart = np.minimum(widest / sine, 2.0 * radius)
     sag = np.minimum(radius - np.sqrt(radius**2 - 0.25 * apart**2), widest * np.sqrt(1.0 - sine**2))
     order = np.argsort(sag)
-    grown = np.cumsum(np.linalg.norm(cross, axis=1)[order])
+    grown = np.cumsum(np.linalg.norm(cross, axis=0)[order])
     return float(sag[order][np.searchsorted(grown, _SHARE * grown[-1])])

@@ -64,7 +64,8 @@ class Ground:
 
     Attributes:
         tool: its shape.
-        part: the part's sections.
+        part: the part's slices.
+        sections: those that the path is made from, with more of them where that pays.
         region_mm: where the tip may be, lower and upper corner, shape (2, 2).
         overhang_mm: how far it may go beyond that.
         stock_mm: the stock's box, shape (2, 3).
@@ -74,6 +75,7 @@ class Ground:
 
     tool: ToolShape
     part: SlicedPart
+    sections: Sections
     region_mm: FloatArray
     overhang_mm: float
     stock_mm: FloatArray
@@ -111,12 +113,20 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, report: Repor
     return Ground(
         tool=tool,
         part=sliced,
+        sections=_sections(settings, sliced, tool),
         region_mm=region,
         overhang_mm=overhang,
         stock_mm=stock,
         floor_mm=float(box[0, 2]) if settings.floor_z_mm is None else settings.floor_z_mm,
         safe_mm=safe,
     )
+
+
+def _sections(settings: PathSettings, part: SlicedPart, tool: ToolShape) -> Sections:
+    """Sections across the rows, or levels; more of them where the part runs along them, unless that changes nothing."""
+    axis = ACROSS[settings.direction] if settings.strategy == "scan" else 2
+    level = settings.strategy == "contour" and tool.corner_mm + settings.allowance_mm == 0.0
+    return part.sections(axis) if settings.exact or level else with_steep_sections(part, axis)
 
 
 def _check_steps(settings: PathSettings, tool: ToolShape) -> None:
@@ -188,7 +198,7 @@ def _rows(
         return lambda left: drop_lines(
             lambda xy: way.lowest_mm(xy, left), along, at, places, floor_mm=ground.floor_mm + left, chord_mm=chord
         )
-    profiles = Profiles.of(with_steep_sections(ground.part, ACROSS[settings.direction]))
+    profiles = Profiles.of(ground.sections)
     element = StructuringElement.tool(ground.tool)
     return lambda left: tip_lines(
         profiles, element, at, places, ground.floor_mm + left, allowance_mm=left, chord_mm=chord
@@ -218,7 +228,7 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
     heights = level_heights(ground.floor_mm + settings.allowance_mm, top, settings.axial_depth_mm)
     element = StructuringElement.tool(ground.tool).with_allowance(settings.allowance_mm)
     at = heights[::-1] + _LIFT_MM
-    regions = _inflated(settings, _sections_with(ground.part, element, at), element, at, report)[::-1]
+    regions = _inflated(settings, _sections_with(ground, at), element, at, report)[::-1]
     levels = levels_of(heights, regions)
     chord = _CHORD_PITCHES * settings.pitch_mm
     window = grown(box_area(*ground.region_mm), ground.overhang_mm, chord)
@@ -235,12 +245,11 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
     return contour_passes(levels, options), LevelWay(levels, window, top)
 
 
-def _sections_with(part: SlicedPart, element: StructuringElement, at: FloatArray) -> Sections:
+def _sections_with(ground: Ground, at: FloatArray) -> Sections:
     """The part's level sections, and those at the levels themselves: a flat bottom meets nothing lower."""
-    own = with_steep_sections(part, 2) if element.corner_mm > 0.0 else part.sections(2)
-    mesh = part.mesh
+    mesh = ground.part.mesh
     regions = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (2, 0, 1), at)
-    return own.joined(Sections(axis=2, positions_mm=at, regions=regions))
+    return ground.sections.joined(Sections(axis=2, positions_mm=at, regions=regions))
 
 
 def _inflated(
