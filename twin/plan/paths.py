@@ -95,6 +95,7 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, report: Repor
         ToolPathError: a safe height below the stock's top.
     """
     tool = parse_tool(settings.tool)
+    _check_tool(settings, tool)
     report("slicing", 0.0)
     sliced = part if isinstance(part, SlicedPart) else slice_part(part, settings.pitch_mm)
     box = np.array([sliced.slices.low_mm, sliced.slices.high_mm])
@@ -105,7 +106,6 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, report: Repor
     overhang = default if settings.overhang_mm is None else settings.overhang_mm
     top = float(stock[1, 2])
     safe = top + max(SAFE_ABOVE_MM, settings.clearance_mm) if settings.safe_z_mm is None else settings.safe_z_mm
-    _check_steps(settings, tool)
     if safe < top + settings.clearance_mm:
         raise ToolPathError(
             f"safe_z_mm = {safe:g}: expected at least {top + settings.clearance_mm:g}, clearance above the stock's top"
@@ -129,12 +129,18 @@ def _sections(settings: PathSettings, part: SlicedPart, tool: ToolShape) -> Sect
     return part.sections(axis) if settings.exact or level else with_steep_sections(part, axis)
 
 
-def _check_steps(settings: PathSettings, tool: ToolShape) -> None:
-    """Refuses steps that leave walls between passes.
+def _check_tool(settings: PathSettings, tool: ToolShape) -> None:
+    """Refuses a taper tool for rows from slices, and steps that leave walls between passes.
 
     Raises:
-        ToolPathError: a step-over above the diameter, or layers that clear an area farther apart than the radius.
+        ToolPathError: one of these: a step-over above the diameter, layers that clear an area farther apart than the
+            radius.
     """
+    if settings.strategy == "scan" and tool.taper_rad > 0.0 and not settings.exact:
+        raise ToolPathError(
+            f"tool = '{settings.tool}': rows from slices are for ball, flat and bull-nose tools; expected one of "
+            "these, or exact = true (--exact)"
+        )
     diameter, radial = 2.0 * tool.nominal_radius_mm, settings.radial_depth_mm or 0.0
     if settings.strategy == "scan" and settings.stepover_mm > diameter:
         raise ToolPathError(f"stepover_mm = {settings.stepover_mm:g}: expected at most {diameter:g}, the diameter")

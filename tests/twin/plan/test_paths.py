@@ -230,6 +230,7 @@ def test_a_tool_larger_than_any_pocket_cuts_nothing() -> None:
     ("values", "error", "message"),
     [
         ({"tool": "drill 8"}, ToolError, 'tool "drill 8"'),
+        ({"tool": "taper 4 a5"}, ToolPathError, "expected one of these, or exact = true"),
         ({"stepover_mm": 5.0}, ToolPathError, "stepover_mm = 5: expected at most 4, the diameter"),
         ({"safe_z_mm": 0.0}, ToolPathError, "safe_z_mm = 0: expected at least"),
         ({"pitch_mm": 1e-7}, StockError, "slice pitch"),
@@ -254,6 +255,7 @@ def test_settings_that_do_not_fit_are_refused(values: dict[str, Any], error: typ
         ({"region_mm": [0, 0, 1]}, "region_mm = .* expected a list of four numbers"),
         ({"region_mm": [5, 0, 1, 3]}, "region_mm must have its lower corner first"),
         ({"layers": 0}, "layers must be at least 1 for a scan"),
+        ({"strategy": "contour", "exact": True}, "exact is for scans"),
         ({"direction": "z"}, 'direction = "z": expected one of "x", "y"'),
         ({"tool": 8}, "tool = 8: expected text"),
     ],
