@@ -10,6 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray: TypeAlias = NDArray[np.float64]
 
 
+def places_in_runs(counts: NDArray[np.int64]) -> NDArray[np.int64]:
+    """0, 1, 2 ... in each of some runs one behind the other, shape (sum of counts,).
+
+    Args:
+        counts: length of each run, shape (n,).
+    """
+    return np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+
+
 def frozen(values: ArrayLike, name: str, shape: tuple[int | None, ...]) -> FloatArray:
     """Copy values into a read-only float array of a given shape.
 

@@ -13,7 +13,7 @@ def meeting_point(before: Segment, segment: Segment, corner: complex, centre: co
     """The point at which the tool touches both sides of a concave corner.
 
     Args:
-        before: the motion of the tool's centre that ends at the corner for now.
+        before: the motion of the tool's centre to the corner, to be ended at this point.
         segment: the programmed motion that leaves the corner.
         corner: the programmed corner.
         centre: the tool's centre at the end of `before`.

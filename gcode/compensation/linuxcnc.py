@@ -30,7 +30,7 @@ class Held:
     """A motion that waits for the next one, which may move its end.
 
     Attributes:
-        segment: the motion with its ends for now.
+        segment: the motion with the ends it has before the next one is known.
         original: the motion as programmed.
         checked: False for an entry, whose direction is free.
     """

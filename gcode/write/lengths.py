@@ -44,9 +44,8 @@ def check_gap(control: Control, event: Motion) -> None:
     Raises:
         WriteError: for a gap between them.
     """
-    if control.at_mm is None or control.at_mm == event.start_mm:
-        return
-    _check_gap(control, event, control.length, control.length)
+    if control.at_mm != event.start_mm:
+        _check_gap(control, event, control.length, control.length)
 
 
 def _check_gap(control: Control, event: Motion, old: LengthOffset, new: LengthOffset) -> None:

@@ -15,6 +15,7 @@ from mcap.records import Chunk, McapRecord, MessageIndex
 from numpy.typing import NDArray
 
 from twin.archive.forces import MESSAGE_OPCODE, RECORD, ForceLayout
+from twin.arrays import places_in_runs
 from twin.record import Step
 
 #: Record length without its head, channel, sequence, log time and publish time before a message's payload.
@@ -131,9 +132,8 @@ class ChunkBuilder:
         """Message index record of the force channel, from arrays."""
         counts = np.array([len(s.samples.t_s) for s in self._steps])
         first = np.repeat(np.array(self._starts), counts)
-        within = np.arange(len(forces)) - np.repeat(np.cumsum(counts) - counts, counts)
         entries = np.empty((len(forces), 2), "<u8")
         entries[:, 0] = forces["log_time"]
-        entries[:, 1] = first + within * RECORD.itemsize
+        entries[:, 1] = first + places_in_runs(counts) * RECORD.itemsize
         head = _INDEX_HEAD.pack(Opcode.MESSAGE_INDEX, 6 + entries.nbytes, self.force_channel, entries.nbytes)
         return head + entries.tobytes()

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from twin.arrays import FloatArray
+from twin.arrays import FloatArray, places_in_runs
 from twin.cam.rooms import CHORD_MM
 from twin.geometry.outline import Area, pieces
 from twin.geometry.room import Room, a_point_of, borders, has_point, shrunk, size_of
@@ -126,7 +126,6 @@ def subdivided(line_mm: FloatArray, longest_mm: float) -> FloatArray:
     lengths = np.linalg.norm(np.diff(line_mm, axis=0), axis=1)
     counts = np.maximum(1, np.ceil(lengths / longest_mm - 1e-9)).astype(np.int64)
     first = np.repeat(np.arange(len(counts)), counts)
-    step = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    part = (step / counts[first])[:, None]
+    part = (places_in_runs(counts) / counts[first])[:, None]
     points = line_mm[first] * (1.0 - part) + line_mm[first + 1] * part
     return np.concatenate((points, line_mm[-1:]))

@@ -86,9 +86,8 @@ def slice_part(part: Path | str | Solid, pitch_mm: float) -> SlicedPart:
     """
     mesh = part if isinstance(part, Solid) else load_mesh(part)
     slices = mesh_slices(mesh, pitch_mm)
-    faces: dict[int, Sections] = {}
-    run_all([partial(lambda axis: faces.update({axis: face_sections(mesh, axis)}), axis) for axis in range(3)])
-    return SlicedPart(mesh=mesh, slices=slices, faces=(faces[0], faces[1], faces[2]))
+    x, y, z = run_all([partial(face_sections, mesh, axis) for axis in range(3)])
+    return SlicedPart(mesh=mesh, slices=slices, faces=(x, y, z))
 
 
 def face_sections(mesh: Solid, axis: int) -> Sections:
@@ -127,20 +126,29 @@ def _cut(mesh: Solid, axis: int, cuts_mm: FloatArray, positions_mm: FloatArray) 
 
 def face_levels(mesh: Solid, axis: int) -> tuple[FloatArray, FloatArray]:
     """Positions of faces across an axis: those with material above them, and those with material below."""
-    which, _ = flat_triangles(mesh, axis)
-    heights = mesh.vertices_mm[mesh.triangles[which, 0], axis]
-    up = _normals(mesh, which)[:, axis] > 0.0
+    which, vectors = flat_triangles(mesh, axis)
+    heights, up = mesh.vertices_mm[mesh.triangles[which, 0], axis], vectors[axis] > 0.0
     return np.unique(heights[~up]), np.unique(heights[up])
 
 
 def flat_triangles(mesh: Solid, axis: int) -> tuple[NDArray[np.int64], FloatArray]:
-    """Triangles that lie across an axis, and their areas in mm2."""
+    """Triangles that lie across an axis, and their `Solid.area_vectors_mm2`."""
     level = _nearly_level(mesh, axis)
-    a, b, c = (mesh.vertices_mm[mesh.triangles[level, i]] for i in range(3))
-    cross = np.cross(b - a, c - a)
-    size = np.linalg.norm(cross, axis=1)
-    flat = np.flatnonzero((np.abs(cross[:, axis]) >= _ACROSS * size) & (size > 0.0))
-    return level[flat], 0.5 * size[flat]
+    vectors = mesh.area_vectors_mm2(level)
+    flat = _lies_across(vectors, axis)
+    return level[flat], vectors[:, flat]
+
+
+def slanted_triangles(mesh: Solid, axis: int) -> tuple[NDArray[np.int64], FloatArray]:
+    """Triangles with an area that do not lie across an axis, and their `Solid.area_vectors_mm2`."""
+    vectors = mesh.area_vectors_mm2()
+    which = np.flatnonzero(np.any(vectors != 0.0, axis=0) & ~_lies_across(vectors, axis))
+    return which, vectors[:, which]
+
+
+def _lies_across(vectors: FloatArray, axis: int) -> NDArray[np.bool_]:
+    size = np.linalg.norm(vectors, axis=0)
+    return np.asarray((np.abs(vectors[axis]) >= _ACROSS * size) & (size > 0.0))
 
 
 def _nearly_level(mesh: Solid, axis: int) -> NDArray[np.int64]:
@@ -164,15 +172,9 @@ def edge_levels(mesh: Solid, axis: int) -> FloatArray:
     of_sides = number[mesh.edges.sides]
     triangles, sides = np.divmod(np.flatnonzero(of_sides >= 0), 3)
     own = of_sides[triangles, sides]
-    normals = _normals(mesh, triangles)
-    summed = np.stack([np.bincount(own, weights=normals[:, i], minlength=len(level)) for i in range(3)], axis=1)
+    normals = mesh.area_vectors_mm2(triangles)
+    normals /= np.maximum(np.linalg.norm(normals, axis=0), 1e-300)
+    summed = np.stack([np.bincount(own, weights=normal, minlength=len(level)) for normal in normals], axis=1)
     # two unit normals at an angle add up to 2 cos(angle / 2)
     sharp = np.linalg.norm(summed, axis=1) < 2.0 * math.cos(0.5 * _SHARP_RAD)
     return np.asarray(np.unique(ends[level[sharp], 0]))
-
-
-def _normals(mesh: Solid, triangles: NDArray[np.int64]) -> FloatArray:
-    """Unit normals of some triangles."""
-    a, b, c = (mesh.vertices_mm[mesh.triangles[triangles, i]] for i in range(3))
-    cross = np.cross(b - a, c - a)
-    return np.asarray(cross / np.maximum(np.linalg.norm(cross, axis=1, keepdims=True), 1e-300))

@@ -22,7 +22,8 @@ def slabs_mm(mesh: Solid, axis: int, planes_mm: FloatArray, pitch_mm: float) -> 
         shape (n, 2), increasing, without gaps.
     """
     ends = np.concatenate((planes_mm - 0.5 * pitch_mm, planes_mm[-1:] + 0.5 * pitch_mm))
-    which, areas = flat_triangles(mesh, axis)
+    which, vectors = flat_triangles(mesh, axis)
+    areas = np.linalg.norm(vectors, axis=0)
     heights = mesh.vertices_mm[mesh.triangles[which, 0], axis]
     levels, of = np.unique(heights, return_inverse=True)
     # the largest last, so that it is what stays

@@ -9,16 +9,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.arrays import FloatArray
-from twin.cam.sections import Sections, SlicedPart, cut_sections
+from twin.arrays import FloatArray, places_in_runs
+from twin.cam.sections import Sections, SlicedPart, cut_sections, slanted_triangles
 from twin.workpiece.from_mesh import Solid
 
 #: Distances along the surface that are allowed, in pitches; a pitch is divided by no more than the second.
 _ALONG, _MOST = 3.0, 16.0
 #: By how much the pitch wanted is made larger, again and again, where there would be more sections than slices.
 _LARGER = 1.1
-#: A face lies across an axis, and has sections of its own, where its normal has this component along it.
-_ACROSS = 1.0 - 1e-9
 
 
 def with_steep_sections(part: SlicedPart, axis: int) -> Sections:
@@ -36,24 +34,12 @@ def with_steep_sections(part: SlicedPart, axis: int) -> Sections:
     if not more.any():
         return sections
     begins, steps = np.repeat(sections.positions_mm[:-1], more), np.repeat(gaps / (more + 1), more)
-    number = np.arange(len(begins)) - np.repeat(np.cumsum(more) - more, more)
-    return sections.joined(cut_sections(part.mesh, axis, begins + steps * (number + 1)))
+    return sections.joined(cut_sections(part.mesh, axis, begins + steps * (places_in_runs(more) + 1)))
 
 
-def across_axis(mesh: Solid, axis: int) -> tuple[NDArray[np.int64], FloatArray, FloatArray]:
-    """Triangles that do not lie across an axis.
-
-    Returns:
-        Their numbers, shape (n,); the sine of the angle between each and planes across the axis; their normals' unit
-        vectors times twice their areas, shape (3, n).
-    """
-    a, b, c = (mesh.vertices_mm.T[:, mesh.triangles[:, i]] for i in range(3))
-    (ux, uy, uz), (vx, vy, vz) = b - a, c - a
-    cross = np.stack((uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx))
-    size = np.sqrt(np.sum(cross**2, axis=0))
-    along = np.abs(cross[axis]) / np.where(size > 0.0, size, 1.0)
-    which = np.flatnonzero((size > 0.0) & (along < _ACROSS))
-    return which, np.sqrt(1.0 - along[which] ** 2), cross[:, which]
+def slopes(vectors: FloatArray, axis: int) -> FloatArray:
+    """Sine of the angle between triangles with these `Solid.area_vectors_mm2` and planes across an axis."""
+    return np.asarray(np.sqrt(1.0 - (vectors[axis] / np.linalg.norm(vectors, axis=0)) ** 2))
 
 
 def gaps_of(mesh: Solid, which: NDArray[np.int64], sections: Sections) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -69,11 +55,12 @@ def gaps_of(mesh: Solid, which: NDArray[np.int64], sections: Sections) -> tuple[
 
 def _wanted_mm(mesh: Solid, sections: Sections, pitch_mm: float) -> FloatArray:
     """Pitch wanted in every gap between two sections; inf where any will do."""
-    which, sine, cross = across_axis(mesh, sections.axis)
-    steep = (cross[2] > 0.0) & (sine < 1.0 / _ALONG)
+    which, vectors = slanted_triangles(mesh, sections.axis)
+    sine = slopes(vectors, sections.axis)
+    steep = (vectors[2] > 0.0) & (sine < 1.0 / _ALONG)
     first, last = gaps_of(mesh, which[steep], sections)
     counts = last - first
-    gap = np.repeat(first, counts) + np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    gap = np.repeat(first, counts) + places_in_runs(counts)
     wanted = np.full(len(sections.positions_mm) + 1, np.inf)
     np.minimum.at(wanted, gap, np.repeat(np.maximum(_ALONG * sine[steep], 1.0 / _MOST) * pitch_mm, counts))
     return wanted[1:-1]

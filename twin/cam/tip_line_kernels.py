@@ -139,10 +139,8 @@ def _touch_table(d2: float, disc: float, corner: float, width: float, place: Flo
 
 
 @njit(cache=True, nogil=True)
-def _touch(nu: float, nv: float, rho: float, round_end: bool, place: FloatArray, slope: FloatArray) -> float:
-    """Where the tool stands along the plane, from the point where it touches a side with this normal."""
-    if round_end:
-        return rho * nu
+def _touch(nu: float, nv: float, place: FloatArray, slope: FloatArray) -> float:
+    """Where a tool with a flat bottom stands along the plane, from where it touches a side with this normal."""
     side = 1.0 if nu > 0.0 else -1.0
     if nu == 0.0:
         return 0.0
@@ -168,13 +166,13 @@ def _shifts(
     slope: FloatArray,
     shifts: FloatArray,
 ) -> None:
-    """`_touch` of many sides."""
+    """Where the tool stands along the plane, from the points where it touches sides with these normals."""
     if round_end:
         for i in range(len(normals_u)):
             shifts[i] = rho * normals_u[i]
     else:
         for i in range(len(normals_u)):
-            shifts[i] = _touch(normals_u[i], normals_v[i], rho, round_end, place, slope)
+            shifts[i] = _touch(normals_u[i], normals_v[i], place, slope)
 
 
 @njit(cache=True, nogil=True)

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
+from twin.cam.sections import cut_sections
 from twin.geometry.shapes import Shape, cut_along, outline_rings, united
-from twin.geometry.slicing import mesh_sections
 from twin.workpiece.store import PLANE_AXES
 
 if TYPE_CHECKING:
@@ -73,10 +73,7 @@ def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None
     axis = int(np.argmin(aside))
     u, v = PLANE_AXES[axis]
     plane = float(deepest.deepest_mm[axis])
-    cut = mesh_sections(
-        sliced.mesh.vertices_mm, sliced.mesh.triangles, sliced.mesh.edges, (axis, u, v), np.array([plane])
-    )[0]
-    _fill_region(axes, cut)
+    _fill_region(axes, cut_sections(sliced.mesh, axis, np.array([plane])).regions[0])
     for number, reach in enumerate(reaches.values()):
         color = _COLORS[number % len(_COLORS)]
         boxes = [b for region in reach.leftovers for b in _cut_boxes(region, axis, plane)]

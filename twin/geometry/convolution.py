@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.guards import guarded
 from twin.geometry.shapes import Shape, Shapes
+from twin.geometry.threads import run_all
 
 #: Neighbours compared at a time.
 _PAIRS = 16
@@ -64,17 +64,15 @@ class Convolution:
         shapes = guarded(shapes, radius_mm)
         self._shapes, self._positions, self._radii = shapes, positions_mm, radii
         self._segments = arc_segments(radius_mm, chord_mm)
-        self._threads = threads or os.cpu_count() or 1
+        self._threads = threads
         self._some = ~shapely.is_empty(shapes)
         shapely.bounds(shapes)  # boxes are kept when first asked for, which threads must not do side by side
-        with ThreadPoolExecutor(max_workers=self._threads) as pool:
-            self._up, self._down = margins(shapes, shapely.boundary(shapes) if edges is None else edges, pool)
+        self._up, self._down = margins(shapes, shapely.boundary(shapes) if edges is None else edges, threads)
 
     def on(self, planes_mm: FloatArray) -> Shapes:
         """The union on every plane."""
         made = np.empty(len(planes_mm), dtype=object)
-        with ThreadPoolExecutor(max_workers=self._threads) as pool:
-            made[:] = list(pool.map(self._plane, planes_mm.tolist()))
+        made[:] = run_all([partial(self._plane, at) for at in planes_mm.tolist()], self._threads)
         return made
 
     def _plane(self, at_mm: float) -> Shape:
@@ -83,7 +81,7 @@ class Convolution:
         return shapely.union_all(shapely.buffer(self._shapes[wanted], radius[wanted], quad_segs=self._segments))
 
 
-def margins(shapes: Shapes, edges: Shapes, pool: ThreadPoolExecutor) -> tuple[FloatArray, FloatArray]:
+def margins(shapes: Shapes, edges: Shapes, threads: int | None) -> tuple[FloatArray, FloatArray]:
     """By how much sections lie inside of their neighbours, or stand out of them.
 
     A section inflated by r lies inside of its neighbour inflated by q as soon as r - q is not above the margin: where
@@ -106,7 +104,7 @@ def margins(shapes: Shapes, edges: Shapes, pool: ThreadPoolExecutor) -> tuple[Fl
         up[first:last] = _margins_one_way(own[:-1], own[1:], same, apart)
         down[first + 1 : last + 1] = _margins_one_way(own[1:], own[:-1], same, apart)
 
-    list(pool.map(some, range(0, len(shapes) - 1, _PAIRS)))
+    run_all([partial(some, first) for first in range(0, len(shapes) - 1, _PAIRS)], threads)
     return up, down
 
 

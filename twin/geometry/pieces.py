@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from twin.arrays import FloatArray
+from twin.arrays import FloatArray, places_in_runs
 from twin.geometry.clip import DECIMALS
 from twin.geometry.shapes import Shape, Shapes, outline_rings
 
@@ -61,7 +61,7 @@ class Pieces:
         points, of = shapely.get_coordinates(self.shapes, return_index=True)
         counts = np.bincount(of, minlength=len(self.shapes))
         every = np.maximum(1, counts // most)
-        place = np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
+        place = places_in_runs(counts)
         kept = place % every[of] == 0
         return points[kept], of[kept].astype(np.int64)
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
+from typing import TypeVar
+
+T = TypeVar("T")
 
 #: Parts that work is cut into; the same for any number of threads, so that results are the same too.
 PARTS = 8
@@ -27,16 +30,13 @@ def in_parts(
     run_all([_part(work, a, b) for a, b in pairwise(bounds) if b > a], threads)
 
 
-def run_all(tasks: list[Callable[[], None]], threads: int | None = None) -> None:
-    """Run tasks that do not depend on each other; the first error is raised."""
+def run_all(tasks: Sequence[Callable[[], T]], threads: int | None = None) -> list[T]:
+    """Results of tasks that do not depend on each other, in their order; the first error is raised."""
     workers = min(len(tasks), (os.cpu_count() or 1) if threads is None else threads)
     if workers <= 1:
-        for task in tasks:
-            task()
-        return
+        return [task() for task in tasks]
     with ThreadPoolExecutor(max_workers=workers) as pool:
-        for future in [pool.submit(task) for task in tasks]:
-            future.result()
+        return [future.result() for future in [pool.submit(task) for task in tasks]]
 
 
 def _part(work: Callable[[int, int], None], first: int, last: int) -> Callable[[], None]:

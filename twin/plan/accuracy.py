@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from twin.cam.sections import Sections
-from twin.cam.steep_sections import across_axis, gaps_of
+from twin.cam.sections import Sections, slanted_triangles
+from twin.cam.steep_sections import gaps_of, slopes
 from twin.plan.paths import Ground
 from twin.plan.settings import PathSettings
 from twin.tools.shape import ToolShape
@@ -33,14 +33,15 @@ def sag_mm(part: Solid, tool: ToolShape, sections: Sections) -> float:
     that rests on lines so far apart sinks in between by r - sqrt(r^2 - s^2 / 4), and never by more than d cos a, for
     the next section behind the place is at most d away along the axis.
     """
-    which, sine, cross = across_axis(part, sections.axis)
+    which, vectors = slanted_triangles(part, sections.axis)
     if len(which) == 0:
         return 0.0
+    sine = slopes(vectors, sections.axis)
     gaps = np.concatenate(([0.0], np.diff(sections.positions_mm), [0.0, 0.0]))
     widest = np.maximum.reduceat(gaps, np.column_stack(gaps_of(part, which, sections)).ravel())[::2]
     radius = tool.corner_mm or tool.nominal_radius_mm
     apart = np.minimum(widest / sine, 2.0 * radius)
     sag = np.minimum(radius - np.sqrt(radius**2 - 0.25 * apart**2), widest * np.sqrt(1.0 - sine**2))
     order = np.argsort(sag)
-    grown = np.cumsum(np.linalg.norm(cross, axis=0)[order])
+    grown = np.cumsum(np.linalg.norm(vectors, axis=0)[order])
     return float(sag[order][np.searchsorted(grown, _SHARE * grown[-1])])

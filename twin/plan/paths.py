@@ -21,7 +21,7 @@ from twin.cam.linking import LinkOptions, Pass, Way, link
 from twin.cam.offset import inflated_planes
 from twin.cam.polylines import Places
 from twin.cam.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
-from twin.cam.sections import Sections, SlicedPart, slice_part
+from twin.cam.sections import Sections, SlicedPart, cut_sections, slice_part
 from twin.cam.steep_sections import with_steep_sections
 from twin.cam.surface import Surface, surface_of_mesh
 from twin.cam.surface_way import SurfaceWay
@@ -31,7 +31,6 @@ from twin.cam.toolpath import ToolPath
 from twin.errors import ToolPathError
 from twin.geometry.outline import box_area, grown
 from twin.geometry.region import Region
-from twin.geometry.slicing import mesh_sections
 from twin.plan.settings import PathSettings
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
@@ -253,9 +252,7 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
 
 def _sections_with(ground: Ground, at: FloatArray) -> Sections:
     """The part's level sections, and those at the levels themselves: a flat bottom meets nothing lower."""
-    mesh = ground.part.mesh
-    regions = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, (2, 0, 1), at)
-    return ground.sections.joined(Sections(axis=2, positions_mm=at, regions=regions))
+    return ground.sections.joined(cut_sections(ground.part.mesh, 2, at))
 
 
 def _inflated(

@@ -58,6 +58,12 @@ class Solid:
         columns = self.vertices_mm[self.used].T
         return np.array([[c.min() for c in columns], [c.max() for c in columns]])
 
+    def area_vectors_mm2(self, which: NDArray[np.int64] | slice = slice(None)) -> FloatArray:
+        """Outward normals of triangles, as long as twice their areas, shape (3, n); all, or those of some numbers."""
+        a, b, c = (self.vertices_mm.T[:, self.triangles[which, i]] for i in range(3))
+        (ux, uy, uz), (vx, vy, vz) = b - a, c - a
+        return np.stack((uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx))
+
     @property
     def volume_mm3(self) -> float:
         """Volume inside the triangles; where bodies overlap it counts twice."""
@@ -131,14 +137,13 @@ def mesh_slices(mesh: Solid, pitch_mm: float) -> SliceSet:
     box = mesh.box_mm
     low, high = frozen(box[0], "low_mm", (3,)), frozen(box[1], "high_mm", (3,))
     pitch, counts = even_pitch(low, high, pitch_mm), plane_counts(low, high, pitch_mm)
-    families: list[tuple[Region, ...]] = [(), (), ()]
 
-    def cut(axis: int) -> None:
+    def cut(axis: int) -> tuple[Region, ...]:
         axes = (axis, *PLANE_AXES[axis])
         planes = plane_positions(low, pitch, axis, counts[axis])
-        families[axis] = mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, axes, planes)
+        return mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, axes, planes)
 
-    run_all([partial(cut, axis) for axis in range(3)])
+    families = run_all([partial(cut, axis) for axis in range(3)])
     return SliceSet(low_mm=low, high_mm=high, pitch_mm=pitch, regions=tuple(families))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -132,8 +131,7 @@ def test_sections_left_out_change_nothing(seed: int) -> None:
     chord = RADIUS * (1.0 - math.cos(0.25 * math.pi / segments))
     planes = np.array([-1.0, 1.02, 2.0, 4.5])
     left_out = 0
-    with ThreadPoolExecutor(2) as pool:
-        up, down = convolution.margins(shapes, shapely.boundary(shapes), pool)
+    up, down = convolution.margins(shapes, shapely.boundary(shapes), 2)
     united = convolution.Convolution(shapes, at, BALL.ball_radii_mm, RADIUS, (1.0 + 1e-9) * chord, threads=2)
     for plane, got in zip(planes, united.on(planes), strict=True):
         radii = BALL.ball_radii_mm(at - plane)
