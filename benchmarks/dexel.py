@@ -18,8 +18,8 @@ from numba import njit
 
 from benchmarks.report import report
 from twin.arrays import FloatArray
-from twin.cam.dexel import Dexels
-from twin.cam.strokes import Strokes
+from twin.cam.stock.dexel import Dexels
+from twin.cam.stock.strokes import Strokes
 from twin.tools.text import parse_tool
 
 PITCH_MM = 0.1

@@ -20,9 +20,9 @@ import numpy as np
 from benchmarks.mold import mold
 from benchmarks.report import report
 from twin.arrays import FloatArray
-from twin.cam.drop_cutter import DropCutter
-from twin.cam.surface import surface_of
-from twin.geometry.slicing import mesh_sections
+from twin.cam.surface.drop_cutter import DropCutter
+from twin.cam.surface.surface import surface_of
+from twin.geometry.mesh.slicing import mesh_sections
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import Solid

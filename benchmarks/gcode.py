@@ -23,9 +23,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks.report import report
-from gcode.arrays import motion_arrays
-from gcode.bulk import PlainStart, plain_run
-from gcode.interpret import interpret
+from gcode.bulk.arrays import motion_arrays
+from gcode.bulk.plain_runs import PlainStart, plain_run
+from gcode.flow.interpret import interpret
 
 RS274 = shutil.which("rs274")
 POINTS_A_PASS = 400

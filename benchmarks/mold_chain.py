@@ -12,8 +12,8 @@ from pathlib import Path
 
 from benchmarks.mold import write_mold
 from benchmarks.report import report
-from twin.mold import STAGES, MoldChain, mold_from_dict
-from twin.mold.table import saved, times_table
+from twin.moldmaking import STAGES, MoldChain, mold_from_dict
+from twin.moldmaking.table import saved, times_table
 
 _JOB = Path(__file__).parents[1] / "examples" / "mold" / "job.toml"
 

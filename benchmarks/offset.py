@@ -25,14 +25,14 @@ import numpy as np
 from numba import njit
 
 from benchmarks.report import report
-from twin.cam.drop_cutter import DropCutter
-from twin.cam.element import StructuringElement
-from twin.cam.machinable import unmachinable
-from twin.cam.offset import inflate
-from twin.cam.polylines import Places
-from twin.cam.sections import slice_part
-from twin.cam.surface import Surface, surface_of_mesh
-from twin.cam.tip_lines import Profiles, tip_heights, tip_lines
+from twin.cam.reach.reach import unmachinable
+from twin.cam.slices.cl_lines import Profiles, tip_heights, tip_lines
+from twin.cam.slices.element import StructuringElement
+from twin.cam.slices.offset import inflate
+from twin.cam.slices.polylines import Places
+from twin.cam.slices.sections import slice_part
+from twin.cam.surface.drop_cutter import DropCutter
+from twin.cam.surface.surface import Surface, surface_of_mesh
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
 

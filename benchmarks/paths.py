@@ -19,13 +19,13 @@ import numpy as np
 
 from benchmarks.report import report
 from twin.arrays import FloatArray
-from twin.cam.drop_cutter import DropCutter
-from twin.cam.sections import SlicedPart, slice_part
-from twin.cam.surface import surface_of_mesh
-from twin.cam.to_nc import NcOptions, Operation, write_nc
-from twin.cam.toolpath import MoveKind, ToolPath
-from twin.plan.paths import plan, prepare
-from twin.plan.settings import settings_of
+from twin.cam.path.to_nc import NcOptions, Operation, write_nc
+from twin.cam.path.toolpath import MoveKind, ToolPath
+from twin.cam.slices.sections import SlicedPart, slice_part
+from twin.cam.surface.drop_cutter import DropCutter
+from twin.cam.surface.surface import surface_of_mesh
+from twin.planning.paths import plan, prepare
+from twin.planning.settings import settings_of
 from twin.tools.text import parse_tool
 
 COMMON = {"strategy": "scan", "tool": "ball 8", "direction": "y", "zigzag": False}

@@ -16,7 +16,7 @@ from pathlib import Path
 from benchmarks.report import report
 from twin.job import Job, load_job
 from twin.record import RunSummary
-from twin.replay import Replay
+from twin.simulation.replay import Replay
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 

@@ -25,7 +25,7 @@ from benchmarks.report import report
 from twin.arrays import FloatArray
 from twin.job import Job, job_from_dict
 from twin.motion.sweep import Body, Sweep
-from twin.replay import Replay
+from twin.simulation.replay import Replay
 from twin.tolerance import Tolerance
 from twin.tools.shape import tool_shape
 from twin.workpiece.removal import Removal

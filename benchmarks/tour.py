@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmarks.report import report
 from twin.arrays import FloatArray
-from twin.cam.tour import LinkSpeeds, Search, order_pieces
+from twin.cam.path.tour import LinkSpeeds, Search, order_pieces
 
 #: Distance alone: a millimetre a second, and no way over.
 _PLAIN = LinkSpeeds(feed_mm_s=1.0, rapid_mm_s=1e-6)

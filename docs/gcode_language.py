@@ -9,11 +9,16 @@ from typing import Any
 
 from gcode_markdown import code, field_texts, table
 
-from gcode import bulk, leader, oflow, parse, program, splines, variables
+from gcode.bulk import plain_runs
 from gcode.compensation.fanuc import BLOCKS_READ_OVER
+from gcode.control import variables
 from gcode.cycles.hole import MOST_STEPS
 from gcode.dialects import ArcTolerance, DwellWord
-from gcode.expressions import (
+from gcode.flow import leader, owords
+from gcode.flow.system_variables import _CONSTANTS as CONSTANTS
+from gcode.flow.system_variables import _NAMED as NAMED
+from gcode.language import parse, program
+from gcode.language.expressions import (
     FANUC_MACRO,
     LINUXCNC_MACRO,
     MAX_DEPTH,
@@ -22,9 +27,8 @@ from gcode.expressions import (
     Source,
     parse_operand,
 )
+from gcode.phases import splines
 from gcode.settings import ADDITIONAL_OFFSETS, Limits, MachineSettings, ToolOffset
-from gcode.system_variables import _CONSTANTS as CONSTANTS
-from gcode.system_variables import _NAMED as NAMED
 from gcode.tables.text_file import LARGEST_BYTES
 
 LANGUAGES: Mapping[str, MacroLanguage] = {"fanuc, haas": FANUC_MACRO, "linuxcnc": LINUXCNC_MACRO}
@@ -212,10 +216,10 @@ def limits() -> str:
         ("steps of one block with a cycle", f"{MOST_STEPS:,}", ""),
         ("additional work offsets", str(ADDITIONAL_OFFSETS), "G54.1 P"),
         ("named parameters of a level", f"{variables._MOST_NAMES:,}", "LinuxCNC"),
-        ("arguments of a subroutine", str(oflow._ARGUMENTS), "LinuxCNC"),
+        ("arguments of a subroutine", str(owords._ARGUMENTS), "LinuxCNC"),
         ("lines before the % of a leader", str(leader.LEADER_LINES), "FANUC, Haas"),
         ("blocks without motion read over by compensation", str(BLOCKS_READ_OVER), "FANUC, Haas"),
         ("straight motions for a spline", str(splines.CURVE_PIECES), "LinuxCNC"),
-        ("lines taken at once", f"{bulk.MAX_LINES:,}", "plain straight motions; nothing to be seen of it"),
+        ("lines taken at once", f"{plain_runs.MAX_LINES:,}", "plain straight motions; nothing to be seen of it"),
     )
     return table(("what", "at most", ""), rows)

@@ -19,12 +19,12 @@ from gcode_markdown import code, table
 from gcode_variables import described
 from gcode_words import LETTERS, PHASES, WORD_PHASES, letter_status
 
-from gcode.codes import CodeRule, Status
 from gcode.cycles import CycleRules
 from gcode.cycles.rules import Act, Cycle
-from gcode.data import _TAKES as DATA_WORDS
 from gcode.dialects import DIALECTS, Dialect
-from gcode.foreign import RULES
+from gcode.dialects.codes import CodeRule, Status
+from gcode.language.foreign import RULES
+from gcode.phases.g10 import _TAKES as DATA_WORDS
 
 PAGE = Path(__file__).with_name("gcode.md")
 _PART = re.compile(r"(<!-- generated: ([a-z-]+) -->\n).*?(<!-- end -->)", re.DOTALL)

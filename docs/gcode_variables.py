@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from gcode.dialects import Dialect
 from gcode.events import Notice
-from gcode.expressions import EvaluationError
-from gcode.program import program_of
-from gcode.runner import Runner
+from gcode.flow.runner import Runner
+from gcode.language.expressions import EvaluationError
+from gcode.language.program import program_of
 from gcode.settings import MachineSettings
 
 #: One more than the largest number that is asked for.

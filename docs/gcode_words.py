@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from gcode.control.modal import _COMPANIONS as COMPANIONS
+from gcode.control.modal import _CORNERED as CORNERED
 from gcode.dialects import Dialect
-from gcode.modal import _COMPANIONS as COMPANIONS
-from gcode.modal import _CORNERED as CORNERED
 
 #: Letters and what their words mean, in the order of the page.
 LETTERS: tuple[tuple[str, str], ...] = (

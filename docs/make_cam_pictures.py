@@ -14,11 +14,11 @@ from matplotlib import pyplot
 from matplotlib.colors import LightSource, ListedColormap
 
 from twin.arrays import FloatArray
-from twin.cam.dexel import Dexels
-from twin.cam.drop_cutter import DropCutter
-from twin.cam.rest import RestMaterial, allowed_heights
-from twin.cam.strokes import Strokes
-from twin.cam.surface import Surface, surface_of
+from twin.cam.stock.dexel import Dexels
+from twin.cam.stock.rest import RestMaterial, allowed_heights
+from twin.cam.stock.strokes import Strokes
+from twin.cam.surface.drop_cutter import DropCutter
+from twin.cam.surface.surface import Surface, surface_of
 from twin.tools.text import parse_tool
 
 ROOT = Path(__file__).parents[1]

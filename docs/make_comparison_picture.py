@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.compare.comparison import compare_files
-from twin.compare.plots import window_waveforms
-from twin.compare.run_forces import RunForces, read_run_forces
-from twin.compare.settings import CompareSettings, ReadSettings
+from twin.comparison.comparison import compare_files
+from twin.comparison.plots import window_waveforms
+from twin.comparison.run_forces import RunForces, read_run_forces
+from twin.comparison.settings import CompareSettings, ReadSettings
 from twin.job import load_job
 from twin.measured import AxisMap
-from twin.replay import Replay
+from twin.simulation.replay import Replay
 from twin.sinks.mcap_sink import McapSink
 
 ROOT = Path(__file__).parents[1]

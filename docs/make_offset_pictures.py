@@ -15,15 +15,15 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 
 from twin.arrays import FloatArray
-from twin.cam.drop_cutter import DropCutter
-from twin.cam.element import StructuringElement
-from twin.cam.machinable import unmachinable
-from twin.cam.offset import inflate, inflate_individually
-from twin.cam.sections import SlicedPart, slice_part
-from twin.cam.surface import surface_of_mesh
-from twin.cli.machinable_plot import write_plot
-from twin.geometry.region import Region
-from twin.geometry.shapes import cut_along, to_shape
+from twin.cam.reach.reach import unmachinable
+from twin.cam.slices.element import StructuringElement
+from twin.cam.slices.offset import inflate, inflate_individually
+from twin.cam.slices.sections import SlicedPart, slice_part
+from twin.cam.surface.drop_cutter import DropCutter
+from twin.cam.surface.surface import surface_of_mesh
+from twin.cli.show.reach_plot import write_plot
+from twin.geometry.polygons.region import Region
+from twin.geometry.polygons.shapes import cut_along, to_shape
 from twin.workpiece.from_mesh import Solid, solid
 from twin.workpiece.stock import SliceSet
 

@@ -24,9 +24,9 @@ from PIL import Image
 from rerun.experimental import ViewerClient
 
 from twin.job import load_job
-from twin.replay import Replay
-from twin.sinks.rerun_layout import TIME
-from twin.sinks.rerun_sink import RerunSink
+from twin.simulation.replay import Replay
+from twin.sinks.rerun.layout import TIME
+from twin.sinks.rerun.sink import RerunSink
 
 ROOT = Path(__file__).parents[1]
 PICTURES = Path(__file__).with_name("pictures")

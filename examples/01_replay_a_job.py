@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.job import load_job
 from twin.record import RunSummary, Step
-from twin.replay import Replay
+from twin.simulation.replay import Replay
 
 JOB = Path(__file__).parent / "ball_slot" / "job.toml"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.job import load_job
-from twin.replay import Replay
+from twin.simulation.replay import Replay
 from twin.sinks.memory import MemorySink
 
 JOB = Path(__file__).parent / "ball_slot" / "job.toml"

@@ -12,7 +12,7 @@ import numpy as np
 from twin.archive import read_forces, run_info
 from twin.job import load_job
 from twin.record import NcEvent, Record, Step
-from twin.replay import Replay
+from twin.simulation.replay import Replay
 from twin.sinks.mcap_sink import McapSink
 
 JOB = Path(__file__).parent / "casting" / "job.toml"

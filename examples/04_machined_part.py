@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from twin.job import load_job
-from twin.replay import Replay
+from twin.simulation.replay import Replay
 from twin.workpiece.from_mesh import stl_bytes
 from twin.workpiece.to_mesh import surface_mesh
 

@@ -18,13 +18,13 @@ from pathlib import Path
 
 import make_torus
 
-from gcode.plot import plot_path
-from twin.cam.sections import SlicedPart, slice_part
-from twin.cam.to_nc import NcOptions, Operation, nc_events, write_nc
+from gcode.report.plot import plot_path
+from twin.cam.path.to_nc import NcOptions, Operation, nc_events, write_nc
+from twin.cam.slices.sections import SlicedPart, slice_part
 from twin.cli.run import run as twin
-from twin.plan.paths import Ground, plan, prepare
-from twin.plan.replay_job import replay_tables, write_replay_job
-from twin.plan.settings import settings_of
+from twin.planning.paths import Ground, plan, prepare
+from twin.planning.replay_job import replay_tables, write_replay_job
+from twin.planning.settings import settings_of
 
 HERE = Path(__file__).parent
 #: Table 4 of the paper; the number of teeth is not told there.

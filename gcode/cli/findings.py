@@ -13,9 +13,9 @@ from typing import Any
 from gcode.cli.machine import Setup
 from gcode.errors import GcodeError, Place
 from gcode.events import Notice
-from gcode.interpret import check, read_program, run
-from gcode.motion_json import call_objects
-from gcode.program import Program
+from gcode.flow.interpret import check, read_program, run
+from gcode.language.program import Program
+from gcode.report.motion_json import call_objects
 
 #: So many lines of a notice's group are named.
 _MOST_LINES = 8

@@ -20,8 +20,8 @@ def motions(
     import sys
 
     from gcode.cli.say import written
-    from gcode.interpret import interpret_file
-    from gcode.motion_json import motion_objects
+    from gcode.flow.interpret import interpret_file
+    from gcode.report.motion_json import motion_objects
 
     encode = json.JSONEncoder(allow_nan=False).encode
     with written():

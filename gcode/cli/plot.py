@@ -41,8 +41,8 @@ def plot(
 ) -> None:
     """Draw the path of a program: rapids dashed, feeds coloured, the same scale along all axes."""
     from gcode.cli.say import UnusableFileError, with_progress
-    from gcode.interpret import interpret_file
-    from gcode.plot import PlotError, check_picture, plot_path
+    from gcode.flow.interpret import interpret_file
+    from gcode.report.plot import PlotError, check_picture, plot_path
 
     try:
         check_picture(out)

@@ -62,7 +62,7 @@ def rewrite(
     """
     from gcode.cli.say import UnusableFileError, with_progress
     from gcode.dialects import dialect_named
-    from gcode.interpret import interpret_file
+    from gcode.flow.interpret import interpret_file
     from gcode.write import WriteOptions, write_file
 
     try:

@@ -30,8 +30,8 @@ def stats(
     Times are those of feeds, dwells, and rapids at the given rate; accelerations and tool changes are not in them.
     """
     from gcode.cli.say import results, with_progress, written
-    from gcode.interpret import interpret_file
-    from gcode.stats import program_stats
+    from gcode.flow.interpret import interpret_file
+    from gcode.report.stats import program_stats
 
     events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
     found = program_stats(with_progress(events, file.name), rapid_mm_min)
@@ -39,7 +39,7 @@ def stats(
         if as_json:
             import json
 
-            from gcode.stats_json import stats_object
+            from gcode.report.stats_json import stats_object
 
             typer.echo(json.dumps({"file": str(file), **stats_object(found)}, indent=2))
         else:

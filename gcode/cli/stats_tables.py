@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from gcode.cli.words import clock, grouped, joined, plural, short, span
-from gcode.stats import TYPES, Box, ProgramStats, Sums, Values
+from gcode.report.stats import TYPES, Box, ProgramStats, Sums, Values
 
 #: So many feeds or speeds are told one by one.
 _MOST_VALUES = 5

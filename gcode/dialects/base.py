@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal
 
-from gcode.codes import Table
 from gcode.cycles import CycleRules
-from gcode.expressions import MacroLanguage
+from gcode.dialects.codes import Table
+from gcode.language.expressions import MacroLanguage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from gcode.codes import COMMON, CYCLES, Table, executed, neutral, noticed, owning, refused
+from gcode.dialects.codes import COMMON, CYCLES, Table, executed, neutral, noticed, owning, refused
 from gcode.dialects.linuxcnc import LINUXCNC
-from gcode.expressions import NO_MACRO
+from gcode.language.expressions import NO_MACRO
 
 CODES: Table = {
     **{code: rule for code, rule in COMMON.items() if code not in ("G43", "G40", "G90.1")},

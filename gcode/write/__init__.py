@@ -1,4 +1,4 @@
-"""Events -> NC programs: the way back from what `gcode.interpret` yields, and the way out for tool paths."""
+"""Events -> NC programs: the way back from what `gcode.flow.interpret` yields, and the way out for tool paths."""
 
 from gcode.write.errors import WriteError
 from gcode.write.options import WriteOptions

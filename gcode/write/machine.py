@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from gcode.codes import Status
+from gcode.dialects.codes import Status
 from gcode.events import CoolantChange, Dwell, Event, MotionState, ProgramStop, SpindleChange, ToolChange
 from gcode.write.control import Control
 from gcode.write.numbers import plain

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from gcode.arcs import arc_lengths
 from gcode.dialects import Dialect
 from gcode.events import PLANE_AXES, ArcMotion, Point
-from gcode.path import points_mm
+from gcode.phases.arcs import arc_lengths
+from gcode.report.path import points_mm
 from gcode.write.numbers import Counts, Grid
 
 #: A circle whose radius is less, in counts, is no circle any more once its centre and ends are rounded.

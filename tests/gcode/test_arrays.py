@@ -12,12 +12,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcode.arrays import Kind, MotionArrays, concatenate, motion_arrays
+from gcode.bulk.arrays import Kind, MotionArrays, concatenate, motion_arrays
 from gcode.dialects import dialect_named
 from gcode.errors import GcodeError
 from gcode.events import NO_EXTRA, ArcMotion, Dwell, Event, LinearMotion
-from gcode.interpret import interpret
-from gcode.motion_json import type_of
+from gcode.flow.interpret import interpret
+from gcode.report.motion_json import type_of
 from gcode.settings import MachineSettings
 
 _T = TypeVar("_T")

@@ -12,14 +12,14 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from gcode.bulk import LEAST_LINES, PlainBatch, PlainRun, PlainStart, expand, plain_run
+from gcode.bulk.plain_runs import LEAST_LINES, PlainBatch, PlainRun, PlainStart, expand, plain_run
+from gcode.bulk.plain_words import plain_end, read_words
 from gcode.dialects import dialect_named
 from gcode.errors import Call, GcodeError
 from gcode.events import Block, Event, LinearMotion, MotionState
-from gcode.interpret import interpret, run
-from gcode.plain_words import plain_end, read_words
-from gcode.program import program_of
-from gcode.runner import Runner
+from gcode.flow.interpret import interpret, run
+from gcode.flow.runner import Runner
+from gcode.language.program import program_of
 from gcode.settings import Limits, MachineSettings
 
 NUMBER = r"[+-]?(?:[0-9]{1,9}(?:\.[0-9]{0,6})?|\.[0-9]{1,6})"
@@ -62,7 +62,7 @@ def one_by_one(text: str, dialect: str, given_settings: MachineSettings) -> tupl
 def in_runs(text: str, dialect: str, given_settings: MachineSettings) -> tuple[list[Event], str]:
     """The same with plain lines taken at once, however few they are."""
     events: list[Event] = []
-    with patch("gcode.runner.plain_run", partial(plain_run, least_lines=1)):
+    with patch("gcode.flow.runner.plain_run", partial(plain_run, least_lines=1)):
         try:
             for event in interpret(text, file="t.nc", dialect=dialect_named(dialect), settings=given_settings):
                 events.append(event)  # noqa: PERF402 the events before a refusal count

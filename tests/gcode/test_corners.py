@@ -11,9 +11,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from gcode.corners import insert_corner
 from gcode.errors import GcodeError, Place
 from gcode.events import PLANE_AXES, ArcMotion, LinearMotion, Motion, MotionState, Plane, Point
+from gcode.phases.corners import insert_corner
 
 
 def space(flat: complex, plane: Plane = 17, height: float = 0.0) -> Point:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from gcode.foreign import recognise
-from gcode.interpret import check
+from gcode.flow.interpret import check
+from gcode.language.foreign import recognise
 
 FOREIGN = {
     "SINUMERIK": {

@@ -6,17 +6,17 @@ from collections.abc import Callable
 
 import pytest
 
-from gcode.blocks import ParsedBlock
-from gcode.codes import Status
+from gcode.control.modal import resolve
+from gcode.control.state import State, initial_state
 from gcode.dialects import DIALECTS, Dialect, dialect_named
+from gcode.dialects.codes import Status
 from gcode.errors import GcodeError, Place
 from gcode.events import Block, LinearMotion, Notice
-from gcode.interpret import step
-from gcode.modal import resolve
-from gcode.parse import parse_line
+from gcode.flow.interpret import step
+from gcode.flow.step import PHASES
+from gcode.language.blocks import ParsedBlock
+from gcode.language.parse import parse_line
 from gcode.settings import MachineSettings, ToolOffset
-from gcode.state import State, initial_state
-from gcode.step import PHASES
 
 ALL = pytest.mark.parametrize("dialect", DIALECTS.values(), ids=DIALECTS.keys())
 

@@ -18,9 +18,9 @@ from gcode.events import (
     SpindleChange,
     ToolChange,
 )
-from gcode.interpret import check, interpret, interpret_file
-from gcode.parse import MAX_LINE
-from gcode.program import read_program
+from gcode.flow.interpret import check, interpret, interpret_file
+from gcode.language.parse import MAX_LINE
+from gcode.language.program import read_program
 from gcode.settings import Limits, MachineSettings
 
 

@@ -12,7 +12,7 @@ from types import ModuleType
 import pytest
 
 from gcode.dialects import DIALECTS
-from gcode.expressions import FANUC_MACRO, LINUXCNC_MACRO
+from gcode.language.expressions import FANUC_MACRO, LINUXCNC_MACRO
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

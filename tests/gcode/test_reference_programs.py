@@ -15,8 +15,8 @@ from support.rs274_compare import our_moves, settings_of, timed
 
 from gcode.errors import GcodeError
 from gcode.events import ArcMotion, LinearMotion
-from gcode.interpret import check, interpret_file
-from gcode.program import read_program
+from gcode.flow.interpret import check, interpret_file
+from gcode.language.program import read_program
 from gcode.settings import MachineSettings, ToolOffset
 
 #: The expected motions were read from text with four decimals of an inch.

@@ -25,10 +25,10 @@ from gcode.events import (
     Point,
     ToolChange,
 )
-from gcode.motion_json import motion_objects
-from gcode.path import extremes_mm, length_mm, points_mm
-from gcode.stats import MOST_VALUES, program_stats
-from gcode.stats_json import stats_object
+from gcode.report.motion_json import motion_objects
+from gcode.report.path import extremes_mm, length_mm, points_mm
+from gcode.report.stats import MOST_VALUES, program_stats
+from gcode.report.stats_json import stats_object
 
 PLACE = Place(file="t.nc", line=7, column=3, text="G1 X1")
 CUTTING = MotionState(tool=2, spindle_rpm=1000.0, spindle_direction=1)

@@ -19,8 +19,8 @@ from support.streams import PLACE, START, TOOLS, Path, motions_of, random_stream
 
 from gcode.dialects import DIALECTS, LINUXCNC
 from gcode.events import ArcMotion, CoolantChange, Dwell, Event, LinearMotion, Motion, ProgramStop, SpindleChange
-from gcode.interpret import interpret
-from gcode.path import length_mm, points_mm
+from gcode.flow.interpret import interpret
+from gcode.report.path import length_mm, points_mm
 from gcode.settings import MachineSettings
 from gcode.write import WriteError, WriteOptions, program_lines, write_file
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from support.slot_run import SlotRun
 from twin.arrays import FloatArray, frozen
-from twin.compare.run_forces import RunForces, run_forces
+from twin.comparison.run_forces import RunForces, run_forces
 from twin.measured.log import ForceLog
 from twin.record import Record, RunHeader, Step
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from support.edge_integral import Pass, log_rows
 from twin.arrays import FloatArray
-from twin.identify.cuts_file import Cuts
-from twin.identify.load import cuts_from_dict
+from twin.identification.cuts.cuts_file import Cuts
+from twin.identification.cuts.load import cuts_from_dict
 
 #: The force on the part, the dynamometer's x along the machine's y, its y along -x, z up.
 QUARTER_TURN = {"map": "x=-Fy,y=Fx,z=Fz", "force_on": "workpiece"}

@@ -22,7 +22,7 @@ PART = SurfaceMesh(
 
 
 class FakeReplay:
-    """Stands in for `twin.replay.Replay`.
+    """Stands in for `twin.simulation.replay.Replay`.
 
     Args:
         at_step: called with the index of each step before it is given out.
@@ -39,7 +39,7 @@ class FakeReplay:
         self.closed = False
 
     def open(self, job: Job, threads: int | None = None) -> FakeReplay:
-        """What `twin.cli.replaying.open_run` does."""
+        """What `twin.cli.commands.replaying.open_run` does."""
         self.job = job
         return self
 

@@ -29,12 +29,12 @@ if __name__ == "__main__":
 from gcode.dialects import DIALECTS, Dialect  # noqa: E402
 from gcode.errors import GcodeError  # noqa: E402
 from gcode.events import ArcMotion, Block, Dwell, Event, LinearMotion  # noqa: E402
-from gcode.interpret import check, interpret  # noqa: E402
-from gcode.motion_json import motion_objects  # noqa: E402
-from gcode.program import program_of  # noqa: E402
+from gcode.flow.interpret import check, interpret  # noqa: E402
+from gcode.language.program import program_of  # noqa: E402
+from gcode.report.motion_json import motion_objects  # noqa: E402
+from gcode.report.stats import program_stats  # noqa: E402
+from gcode.report.stats_json import stats_object  # noqa: E402
 from gcode.settings import Limits, MachineSettings, ToolOffset  # noqa: E402
-from gcode.stats import program_stats  # noqa: E402
-from gcode.stats_json import stats_object  # noqa: E402
 
 PROGRAMS = sorted((ROOT / "tests" / "gcode" / "programs").iterdir())
 #: Texts of the seed programs by file name; the name begins with that of their dialect.

@@ -7,7 +7,7 @@ from pathlib import Path
 import pyarrow as pa
 from rerun.chunk import RrdReader
 
-from twin.sinks import rerun_layout as layout
+from twin.sinks.rerun import layout
 
 
 class Recording:

@@ -19,7 +19,7 @@ from twin.cli import run
 from twin.cli.stop import StopWish
 from twin.errors import ArchiveError, ReplayError
 from twin.record import Collision, Record, RunSummary, Step
-from twin.sinks.rerun_sink import RerunSink
+from twin.sinks.rerun.sink import RerunSink
 
 Use = Callable[..., FakeReplay]
 
@@ -30,7 +30,7 @@ def use(monkeypatch: pytest.MonkeyPatch) -> Use:
 
     def install(**options: object) -> FakeReplay:
         fake = FakeReplay(**options)  # type: ignore[arg-type]
-        monkeypatch.setattr("twin.cli.replaying.open_run", fake.open)
+        monkeypatch.setattr("twin.cli.commands.replaying.open_run", fake.open)
         return fake
 
     return install

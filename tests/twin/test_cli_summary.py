@@ -10,10 +10,10 @@ from rich.console import Console
 from support.fake_replay import FakeReplay
 from support.slot_run import SlotRun
 
-from twin.cli import words
-from twin.cli.progress import LineProgress, NoProgress, progress
-from twin.cli.summary import Timing, mean_force, print_summary
-from twin.cli.watch import MOST_COLLISIONS, Watch
+from twin.cli.show import words
+from twin.cli.show.progress import LineProgress, NoProgress, progress
+from twin.cli.show.summary import Timing, mean_force, print_summary
+from twin.cli.show.watch import MOST_COLLISIONS, Watch
 from twin.record import Collision, NcEvent, RunSummary
 
 HEADER = SlotRun().header()
@@ -204,7 +204,7 @@ def test_progress_is_silent_where_standard_error_is_no_terminal(capsys: pytest.C
 def test_progress_shows_time_place_and_pace(monkeypatch: pytest.MonkeyPatch) -> None:
     shown = io.StringIO()
     console = Console(file=shown, force_terminal=True, width=120, color_system=None)
-    monkeypatch.setattr("twin.cli.progress.errors", lambda: console)
+    monkeypatch.setattr("twin.cli.show.progress.errors", lambda: console)
     clock = iter([100.0, 102.0, 102.05])
     with LineProgress(lambda: next(clock)) as line:
         line.start(60.0)

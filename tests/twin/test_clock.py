@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from twin.run.clock import SpindleClock
+from twin.simulation.clock import SpindleClock
 
 
 @given(st.lists(st.tuples(st.floats(1e-4, 0.5), st.sampled_from([0.0, 600.0, 3600.0, -1200.0])), max_size=30))

@@ -14,7 +14,7 @@ from support.reference import NC
 from twin.archive import read_forces, run_info
 from twin.job import job_from_dict
 from twin.record import RunSummary
-from twin.replay import Replay
+from twin.simulation.replay import Replay
 from twin.sinks.mcap_sink import McapSink
 
 STEEL = {"Ktc": 1900.0, "Kte": 22.0, "Krc": 700.0, "Kre": 45.0, "Kac": 400.0, "Kae": 2.0, "source": "test"}

@@ -14,7 +14,7 @@ from gcode.errors import GcodeError
 from twin.errors import CollisionError, JobError, ReplayError
 from twin.job import job_from_dict
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, WorkpiecePatch
-from twin.replay import Replay
+from twin.simulation.replay import Replay
 
 HEAD = "G21 G90 G94 G17 G40 G49 G80\nG54\nT1 M6\nS3000 M3\nG43 H1\n"
 BALL = {

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from twin.archive import schemas
-from twin.archive.container import Container
+from twin.archive.container.container import Container
+from twin.archive.container.partial import PartialFile
 from twin.archive.forces import to_ns
-from twin.archive.partial import PartialFile
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 

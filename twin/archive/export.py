@@ -9,8 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
+from twin.archive.container.partial import partial_path, reason
 from twin.archive.force_table import force_schema, force_tables
-from twin.archive.partial import partial_path, reason
 from twin.archive.reader import read_run
 from twin.errors import ArchiveError
 from twin.record import ForceOn

@@ -13,8 +13,8 @@ from mcap.reader import make_reader
 from mcap.records import Channel, Schema
 
 from twin.archive import schemas
+from twin.archive.container.partial import reason
 from twin.archive.frames import RunFile
-from twin.archive.partial import reason
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 

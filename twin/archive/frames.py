@@ -21,8 +21,8 @@ from mcap.records import Attachment as AttachmentRecord
 from mcap.records import Chunk, Footer, Header
 
 from twin.archive import schemas
-from twin.archive.container import MAGIC
-from twin.archive.partial import partial_path, reason
+from twin.archive.container.container import MAGIC
+from twin.archive.container.partial import partial_path, reason
 from twin.errors import ArchiveError
 from twin.record import Attachment
 

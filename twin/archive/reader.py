@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from twin.archive import forces, messages, schemas
 from twin.archive import run_metadata as meta
-from twin.archive.chunk import MESSAGE_FIXED, MESSAGE_HEAD
+from twin.archive.container.chunk import MESSAGE_FIXED, MESSAGE_HEAD
 from twin.archive.frames import DAMAGE, HEAD, Frame, RunFile, stream
 from twin.errors import ArchiveError
 from twin.record import Attachment, Record, RunHeader, RunSummary, Step

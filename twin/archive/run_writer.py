@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from twin.archive import messages, schemas
 from twin.archive import run_metadata as meta
-from twin.archive.container import Container
+from twin.archive.container.container import Container
 from twin.archive.forces import to_ns
 from twin.errors import ArchiveError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, ToolRecord, WorkpiecePatch

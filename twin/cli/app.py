@@ -6,18 +6,18 @@ from typing import Annotated
 
 import typer
 
-from twin.cli.compare import compare
-from twin.cli.export import export
-from twin.cli.identify import identify
-from twin.cli.info import info
-from twin.cli.machinable import machinable
-from twin.cli.mesh import mesh
-from twin.cli.mold import mold
-from twin.cli.paths import paths
-from twin.cli.replay import replay
-from twin.cli.schema import schema
-from twin.cli.verify import verify
-from twin.cli.view import view
+from twin.cli.commands.compare import compare
+from twin.cli.commands.export import export
+from twin.cli.commands.identify import identify
+from twin.cli.commands.info import info
+from twin.cli.commands.mesh import mesh
+from twin.cli.commands.mold import mold
+from twin.cli.commands.paths import paths
+from twin.cli.commands.reach import machinable
+from twin.cli.commands.replay import replay
+from twin.cli.commands.schema import schema
+from twin.cli.commands.verify import verify
+from twin.cli.commands.view import view
 
 app = typer.Typer(
     name="twin",

@@ -36,7 +36,7 @@ def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool) -> I
 
             sinks.append(McapSink(mcap, force=force))
         if rrd is not None or view:
-            from twin.sinks.rerun_sink import RerunSink
+            from twin.sinks.rerun.sink import RerunSink
 
             sinks.append(RerunSink(rrd=rrd, spawn=view, force=force))
 

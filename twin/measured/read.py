@@ -8,8 +8,8 @@ from os import PathLike
 from pathlib import Path
 
 from twin.errors import MeasuredError
+from twin.measured.formats.table import Table
 from twin.measured.log import RawLog
-from twin.measured.table import Table
 from twin.measured.timing import raw_log
 
 _MCAP_MAGIC = b"\x89MCAP"
@@ -60,7 +60,7 @@ def _read(
     binary = _binary(path, group)
     if binary is not None:
         return binary if columns is None else _renamed(path, binary, columns)
-    from twin.measured import dynoware, lvm, text
+    from twin.measured.formats import dynoware, lvm, text
 
     if lvm.is_lvm(path):
         read = lvm.read_lvm(path)
@@ -74,7 +74,7 @@ def _binary(path: Path, group: str | None) -> Table | None:
     """The table of a binary format, None for text."""
     with path.open("rb") as file:
         begin = file.read(16)
-    from twin.measured import hdf5, matlab, mcap_log, parquet, tdms
+    from twin.measured.formats import hdf5, matlab, mcap_log, parquet, tdms
 
     if begin.startswith(_MCAP_MAGIC):
         return mcap_log.read_mcap(path, group)

@@ -9,8 +9,8 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.errors import MeasuredError
+from twin.measured.formats.table import Table
 from twin.measured.log import GAP_INTERVALS, UNEVEN, UNEVEN_GAP, Channel, RawLog, gaps_of, vector
-from twin.measured.table import Table
 from twin.measured.units import ANGLE_NAME, TIME_NAME, find_unit, split_unit
 
 #: A given rate and the one of the time column may differ by so much before it is worth a note.

@@ -391,7 +391,7 @@ def section_nodes(
     nodes: FloatArray,
     fresh: NDArray[np.bool_],
 ) -> int:
-    """Strips of a swept tool on a run of planes, as `twin.geometry.strips.Strips` holds them.
+    """Strips of a swept tool on a run of planes, as `twin.geometry.column_cells.strips.Strips` holds them.
 
     Nodes are placed by halving until no chord of lo or hi stands off its curve by more than ``chord``, evenly in the
     angle whose cosine is u, which follows a round section's vertical ends.

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry.strips import Strips
+from twin.geometry.column_cells.strips import Strips
 from twin.motion import kernels
 from twin.tools.shape import ToolShape
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from twin.archive.interrupt import after_this
-from twin.archive.partial import PartialFile
+from twin.archive.container.interrupt import after_this
+from twin.archive.container.partial import PartialFile
 from twin.archive.run_writer import RunWriter
 from twin.record import Record
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry.lines import LineEnds
+from twin.geometry.polygons.lines import LineEnds
 from twin.workpiece import contour_kernels, lattice_kernels
 from twin.workpiece.cell_cases import OTHER_AXES, sheet_table
 from twin.workpiece.lattice import Patch, PatchGrid

@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from twin.arrays import FloatArray, frozen
 from twin.errors import MeshError
-from twin.geometry.region import Region
-from twin.geometry.slicing import MeshEdges, mesh_edges, mesh_sections, weld
+from twin.geometry.mesh.slicing import MeshEdges, mesh_edges, mesh_sections, weld
+from twin.geometry.polygons.region import Region
 from twin.geometry.threads import run_all
 from twin.workpiece.solid_check import check_closed, check_orientation
 from twin.workpiece.stock import SliceSet, even_pitch, plane_counts, plane_positions

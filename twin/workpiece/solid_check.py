@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from twin.arrays import FloatArray
 from twin.errors import MeshError
-from twin.geometry.slicing import MeshEdges
+from twin.geometry.mesh.slicing import MeshEdges
 
 #: How many places a message names.
 _NAMED = 3

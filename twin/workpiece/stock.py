@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from twin.arrays import FloatArray, frozen
 from twin.errors import StockError
-from twin.geometry.clip import DECIMALS
-from twin.geometry.region import Region
+from twin.geometry.polygons.clip import DECIMALS
+from twin.geometry.polygons.region import Region
 from twin.workpiece.store import PLANE_AXES
 
 AXIS_NAMES = "xyz"

@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry.lines import LineEnds
-from twin.geometry.region import Region
+from twin.geometry.polygons.lines import LineEnds
+from twin.geometry.polygons.region import Region
 
 #: In-plane axes (u, v) of each slice family.
 PLANE_AXES: tuple[tuple[int, int], ...] = ((1, 2), (0, 2), (0, 1))

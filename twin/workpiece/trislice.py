@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry import clip, kernels
-from twin.geometry.cells import CELL_PITCHES, CellFamily
-from twin.geometry.lines import LineEnds, ring_line_ends
-from twin.geometry.region import Region
-from twin.geometry.strips import Strips
+from twin.geometry.column_cells import kernels
+from twin.geometry.column_cells.cells import CELL_PITCHES, CellFamily
+from twin.geometry.column_cells.strips import Strips
+from twin.geometry.polygons import clip
+from twin.geometry.polygons.lines import LineEnds, ring_line_ends
+from twin.geometry.polygons.region import Region
 from twin.workpiece.stock import SliceSet
 from twin.workpiece.store import PLANE_AXES
 
@@ -119,7 +120,7 @@ class TriSlices(ABC):
 
 
 class CellSlices(TriSlices):
-    """The fast store: column cells, see `twin.geometry.kernels`."""
+    """The fast store: column cells, see `twin.geometry.column_cells.kernels`."""
 
     def __init__(self, slices: SliceSet) -> None:
         super().__init__(slices)

@@ -10,8 +10,8 @@ import pytest
 from gcode.dialects import dialect_named
 from gcode.errors import GcodeError
 from gcode.events import LinearMotion, Motion, Point
-from gcode.program import program_of
-from gcode.runner import Runner
+from gcode.flow.runner import Runner
+from gcode.language.program import program_of
 from gcode.settings import MachineSettings
 
 

@@ -99,7 +99,7 @@ def test_ctrl_c_while_writing_waits_for_the_record(tmp_path, run_records, same, 
         return done
 
     monkeypatch.setattr("twin.archive.run_writer.CHUNK_BYTES", 1)
-    monkeypatch.setattr("twin.archive.partial.os.write", interrupted)
+    monkeypatch.setattr("twin.archive.container.partial.os.write", interrupted)
     sink = McapSink(tmp_path / "run.mcap")
     for record in run_records:
         with pytest.raises(KeyboardInterrupt):

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twin.arrays import FloatArray
-from twin.cam.arc_fit import FitOptions, fit_move, fit_path
-from twin.cam.toolpath import Move, MoveKind, ToolPath
+from twin.cam.path.arc_fit import FitOptions, fit_move, fit_path
+from twin.cam.path.toolpath import Move, MoveKind, ToolPath
 from twin.tools.shape import tool_shape
 
 #: Rounding of sums of a few numbers of size 100.

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import shapely
 
-from twin.cam.contour import ContourOptions, LevelWay, contour_passes, level_heights, levels_of
-from twin.geometry.outline import box_area
-from twin.geometry.region import Region
+from twin.cam.passes.contour import ContourOptions, LevelWay, contour_passes, level_heights, levels_of
+from twin.geometry.polygons.outline import box_area
+from twin.geometry.polygons.region import Region
 
 SQUARE = [(-5.0, -5.0), (5.0, -5.0), (5.0, 5.0), (-5.0, 5.0)]
 #: A frame of 20 x 20 mm around a pocket of 10 x 10 mm.

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.golden_section import underside
 
-from gcode.interpret import interpret
+from gcode.flow.interpret import interpret
 from twin.arrays import FloatArray
-from twin.cam.dexel import Dexels
-from twin.cam.strokes import CHORD_MM, Strokes
-from twin.cam.toolpath import Move as PathMove
-from twin.cam.toolpath import MoveKind, ToolPath
+from twin.cam.path.toolpath import Move as PathMove
+from twin.cam.path.toolpath import MoveKind, ToolPath
+from twin.cam.stock.dexel import Dexels
+from twin.cam.stock.strokes import CHORD_MM, Strokes
 from twin.errors import StockError
 from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Arc, Move

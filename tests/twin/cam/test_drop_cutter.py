@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from support.terrain import block, rough, terrain, waves
 
 from twin.arrays import FloatArray
-from twin.cam import drop_cutter
-from twin.cam.drop_cutter import EDGE, FACE, FLOOR, VERTEX, DropCutter
-from twin.cam.surface import surface_of, surface_of_mesh
+from twin.cam.surface import drop_cutter
+from twin.cam.surface.drop_cutter import EDGE, FACE, FLOOR, VERTEX, DropCutter
+from twin.cam.surface.surface import surface_of, surface_of_mesh
 from twin.errors import MeshError, ToolError
 from twin.geometry.threads import FEW, in_parts
 from twin.tools.shape import ToolShape

@@ -12,7 +12,7 @@ from support.golden_section import dropped
 from support.terrain import block, plane32, rough, terrain, waves
 
 from twin.arrays import FloatArray
-from twin.cam.drop_cutter import DropCutter
+from twin.cam.surface.drop_cutter import DropCutter
 from twin.tools.text import parse_tool
 
 TOOLS = ("ball 4", "ball 8", "flat 3", "bull 6 r1", "bull 5 r2", "taper 2 r0.5 a15", "taper 2 a25")

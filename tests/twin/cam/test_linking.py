@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from twin.arrays import FloatArray
-from twin.cam.linking import LinkOptions, Pass, link
-from twin.cam.toolpath import Move, MoveKind, ToolPath
+from twin.cam.path.linking import LinkOptions, Pass, link
+from twin.cam.path.toolpath import Move, MoveKind, ToolPath
 from twin.tools.shape import tool_shape
 
 TOOL = tool_shape("flat", 6.0, 20.0)

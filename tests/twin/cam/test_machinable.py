@@ -12,11 +12,11 @@ from support import solids
 from support.facets import ring_in_facets
 
 from twin.arrays import FloatArray
-from twin.cam.element import StructuringElement
-from twin.cam.largest import largest_ball_mm
-from twin.cam.leftover_mesh import leftover_mesh
-from twin.cam.machinable import thin_bound_mm, unmachinable
-from twin.cam.sections import SlicedPart, slice_part
+from twin.cam.reach.largest_ball import largest_ball_mm
+from twin.cam.reach.leftover_mesh import leftover_mesh
+from twin.cam.reach.reach import thin_bound_mm, unmachinable
+from twin.cam.slices.element import StructuringElement
+from twin.cam.slices.sections import SlicedPart, slice_part
 from twin.errors import ToolError
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import solid

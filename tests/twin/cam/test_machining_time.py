@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from twin.cam.machining_time import Dynamics, machining_time
-from twin.cam.toolpath import Move, MoveKind, ToolPath
+from twin.cam.path.machining_time import Dynamics, machining_time
+from twin.cam.path.toolpath import Move, MoveKind, ToolPath
 from twin.motion.path import Arc
 from twin.tools.shape import tool_shape
 

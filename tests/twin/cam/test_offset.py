@@ -9,13 +9,13 @@ import pytest
 import shapely
 from support import solids
 
-from twin.cam.element import StructuringElement
-from twin.cam.offset import bound_mm, inflate, inflate_individually, shrink
-from twin.cam.sections import SlicedPart, slice_part
+from twin.cam.slices.element import StructuringElement
+from twin.cam.slices.offset import bound_mm, inflate, inflate_individually, shrink
+from twin.cam.slices.sections import SlicedPart, slice_part
 from twin.errors import ToolError
-from twin.geometry import convolution
-from twin.geometry.region import Region
-from twin.geometry.shapes import to_shape, to_shapes
+from twin.geometry.polygons import convolution
+from twin.geometry.polygons.region import Region
+from twin.geometry.polygons.shapes import to_shape, to_shapes
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import solid
 from twin.workpiece.stock import SliceSet

@@ -7,10 +7,10 @@ import pytest
 
 from gcode.dialects import dialect_named
 from gcode.errors import GcodeError
-from gcode.interpret import interpret
+from gcode.flow.interpret import interpret
 from gcode.settings import ALL_OFFSETS, MachineSettings, ToolOffset
-from twin.cam.dexel import Dexels
-from twin.cam.program_strokes import cut_program
+from twin.cam.stock.dexel import Dexels
+from twin.cam.stock.program_strokes import cut_program
 from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Move
 from twin.tools.text import parse_tool

@@ -9,8 +9,8 @@ import pytest
 from support.golden_section import underside
 from support.terrain import block, terrain, waves
 
-from twin.cam.dexel import Dexels
-from twin.cam.rest import (
+from twin.cam.stock.dexel import Dexels
+from twin.cam.stock.rest import (
     LEAST_MM,
     RestMaterial,
     allowed_heights,
@@ -19,8 +19,8 @@ from twin.cam.rest import (
     spacing_for_cusp,
     stock_heights,
 )
-from twin.cam.strokes import Strokes
-from twin.cam.surface import Surface, surface_of
+from twin.cam.stock.strokes import Strokes
+from twin.cam.surface.surface import Surface, surface_of
 from twin.errors import ToolError
 from twin.tools.text import parse_tool
 

@@ -10,13 +10,13 @@ from support import solids
 from support.small_parts import box, prism
 
 from twin.arrays import FloatArray
-from twin.cam.drop_cutter import DropCutter
-from twin.cam.element import StructuringElement
-from twin.cam.polylines import Places
-from twin.cam.sections import Sections, SlicedPart, slice_part
-from twin.cam.steep_sections import with_steep_sections
-from twin.cam.tip_lines import Profiles, tip_heights
-from twin.plan.accuracy import sag_mm
+from twin.cam.slices.cl_lines import Profiles, tip_heights
+from twin.cam.slices.element import StructuringElement
+from twin.cam.slices.polylines import Places
+from twin.cam.slices.sections import Sections, SlicedPart, slice_part
+from twin.cam.slices.steep_sections import with_steep_sections
+from twin.cam.surface.drop_cutter import DropCutter
+from twin.planning.accuracy import sag_mm
 from twin.tools.text import parse_tool
 
 HIGH = 6.0

@@ -7,12 +7,12 @@ import pytest
 from support import solids
 
 from twin.arrays import FloatArray
-from twin.cam.drop_cutter import DropCutter
-from twin.cam.element import StructuringElement
-from twin.cam.polylines import Places
-from twin.cam.sections import Sections, SlicedPart, slice_part
-from twin.cam.surface import surface_of_mesh
-from twin.cam.tip_lines import Profiles, tip_heights, tip_lines
+from twin.cam.slices.cl_lines import Profiles, tip_heights, tip_lines
+from twin.cam.slices.element import StructuringElement
+from twin.cam.slices.polylines import Places
+from twin.cam.slices.sections import Sections, SlicedPart, slice_part
+from twin.cam.surface.drop_cutter import DropCutter
+from twin.cam.surface.surface import surface_of_mesh
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import Solid, solid
 

@@ -9,13 +9,13 @@ from support.rs274 import RS274
 
 from gcode.dialects import dialect_named
 from gcode.events import ArcMotion, LinearMotion
-from gcode.interpret import interpret_file
-from gcode.path import points_mm
+from gcode.flow.interpret import interpret_file
+from gcode.report.path import points_mm
 from gcode.settings import MachineSettings, ToolOffset
-from twin.cam.arc_fit import FitOptions, fit_path
-from twin.cam.linking import LinkOptions, Pass, link
-from twin.cam.to_nc import NcOptions, Operation, describe, plain_comment, write_nc
-from twin.cam.toolpath import ToolPath
+from twin.cam.path.arc_fit import FitOptions, fit_path
+from twin.cam.path.linking import LinkOptions, Pass, link
+from twin.cam.path.to_nc import NcOptions, Operation, describe, plain_comment, write_nc
+from twin.cam.path.toolpath import ToolPath
 from twin.errors import ToolPathError
 from twin.tools.shape import tool_shape
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from twin.cam.toolpath import Move, MoveKind, ToolPath, arc_sweep_rad, rapid_over
+from twin.cam.path.toolpath import Move, MoveKind, ToolPath, arc_sweep_rad, rapid_over
 from twin.motion.path import Arc
 from twin.tools.shape import tool_shape
 

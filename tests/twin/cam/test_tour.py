@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from twin.arrays import FloatArray
-from twin.cam.tour import METHODS, ClearGrid, LinkSpeeds, Method, Search, Tour, order_pieces
+from twin.cam.path.tour import METHODS, ClearGrid, LinkSpeeds, Method, Search, Tour, order_pieces
 
 PLAIN = LinkSpeeds(feed_mm_s=1.0, rapid_mm_s=1e-6)
 FAR = 1e9

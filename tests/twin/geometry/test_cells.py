@@ -11,10 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twin.arrays import FloatArray
-from twin.geometry import clip, kernels
-from twin.geometry.cells import CellFamily
-from twin.geometry.region import Region
-from twin.geometry.strips import Strips
+from twin.geometry.column_cells import kernels
+from twin.geometry.column_cells.cells import CellFamily
+from twin.geometry.column_cells.strips import Strips
+from twin.geometry.polygons import clip
+from twin.geometry.polygons.region import Region
 
 CUTS = 60 if os.environ.get("NUMBA_DISABLE_JIT") == "1" else 2000
 OUTER = [(0.0, 0.0), (20.0, 0.0), (20.0, 12.7), (0.0, 12.7)]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.small_parts import box, prism, small_torus
 
-from twin.geometry.closest import ClosestPoints
+from twin.geometry.mesh.closest import ClosestPoints
 from twin.workpiece.from_mesh import Solid
 from twin.workpiece.solid_check import winding_number
 

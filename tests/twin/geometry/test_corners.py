@@ -5,7 +5,7 @@ import math
 import pytest
 import shapely
 
-from twin.geometry.corners import Corners
+from twin.geometry.polygons.corners import Corners
 
 
 def test_corners_that_stand_out_are_found_and_inner_ones_are_not() -> None:

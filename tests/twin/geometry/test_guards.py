@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from twin.geometry.guards import guarded
-from twin.geometry.shapes import Shapes
+from twin.geometry.polygons.guards import guarded
+from twin.geometry.polygons.shapes import Shapes
 
 RADIUS = 4.0
 

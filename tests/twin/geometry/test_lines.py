@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from twin.geometry.cells import CellFamily
-from twin.geometry.lines import LineEnds, ring_line_ends
-from twin.geometry.region import Region
+from twin.geometry.column_cells.cells import CellFamily
+from twin.geometry.polygons.lines import LineEnds, ring_line_ends
+from twin.geometry.polygons.region import Region
 from twin.motion.sweep import Body, Sweep
 from twin.tools.shape import tool_shape
 from twin.workpiece.removal import Removal

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from twin.geometry import slicing_kernels as kernels
-from twin.geometry.slicing import mesh_edges, weld
+from twin.geometry.mesh import slicing_kernels as kernels
+from twin.geometry.mesh.slicing import mesh_edges, weld
 
 
 def simple(*rings: list[tuple[int, int]]) -> bool:

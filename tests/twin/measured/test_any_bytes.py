@@ -14,8 +14,8 @@ from support.measured_files import FORMATS
 
 from twin.errors import MeasuredError
 from twin.measured import force_log, read_log
+from twin.measured.formats.text import parse_text
 from twin.measured.log import RawLog
-from twin.measured.text import parse_text
 from twin.measured.timing import raw_log
 
 CHARACTERS = st.sampled_from(list("0123456789.,;:\t -+eE#%\"'[]()/abcFxyztNs\n\n\n"))

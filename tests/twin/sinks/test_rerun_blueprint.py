@@ -20,10 +20,10 @@ from rerun.experimental import ViewerClient
 from tests.support.slot_run import BOX, SlotRun
 from twin.archive.schemas import FORCE, FORCE_TOPIC, MESSAGES
 from twin.errors import ArchiveError
-from twin.sinks import rerun_layout as layout
 from twin.sinks.mcap_sink import McapSink
-from twin.sinks.rerun_blueprint import SHIPPED, blueprint, save_blueprint
-from twin.sinks.rerun_sink import RerunSink
+from twin.sinks.rerun import layout
+from twin.sinks.rerun.blueprint import SHIPPED, blueprint, save_blueprint
+from twin.sinks.rerun.sink import RerunSink
 
 RUN = SlotRun(step_mm=1.0, per_turn=36)
 RERUN = Path(sysconfig.get_path("scripts")) / "rerun"

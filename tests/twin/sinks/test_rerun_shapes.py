@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.support.slot_run import SlotRun
-from twin.sinks import rerun_layout as layout
-from twin.sinks.rerun_batches import BATCH_STEPS, PathBatch, RevolutionPeak, StepBatch
-from twin.sinks.rerun_shapes import (
+from twin.sinks.rerun import layout
+from twin.sinks.rerun.batches import BATCH_STEPS, PathBatch, RevolutionPeak, StepBatch
+from twin.sinks.rerun.shapes import (
     CLASSES,
     SIDES,
     box_edges,
@@ -24,7 +24,7 @@ from twin.sinks.rerun_shapes import (
     scale_end_n,
     tool_mesh,
 )
-from twin.sinks.rerun_summary import summary_text
+from twin.sinks.rerun.summary import summary_text
 
 RUN = SlotRun(step_mm=1.0, per_turn=36)
 

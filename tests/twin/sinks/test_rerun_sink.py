@@ -15,9 +15,10 @@ from tests.support.recording import Recording
 from tests.support.slot_run import SlotRun, patch
 from twin.errors import ArchiveError, TwinError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, WorkpiecePatch
-from twin.sinks import rerun_file, rerun_sink
-from twin.sinks import rerun_layout as layout
-from twin.sinks.rerun_sink import RerunSink
+from twin.sinks.rerun import file as rerun_file
+from twin.sinks.rerun import layout
+from twin.sinks.rerun import sink as rerun_sink
+from twin.sinks.rerun.sink import RerunSink
 
 RUN = SlotRun(step_mm=1.0, per_turn=36)
 
@@ -254,7 +255,7 @@ def test_a_full_disk_is_an_error_and_keeps_what_was_written(tmp_path: Path, monk
         room[0] -= len(data)
         return whole(file, data)
 
-    monkeypatch.setattr("twin.archive.partial.os.write", small_disk)
+    monkeypatch.setattr("twin.archive.container.partial.os.write", small_disk)
     sink = RerunSink(rrd=path)
     with pytest.raises(ArchiveError) as caught:
         for record in SlotRun(step_mm=0.5, per_turn=360).records():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from twin.arrays import FloatArray
-from twin.geometry.region import Region
+from twin.geometry.polygons.region import Region
 from twin.motion.sweep import Body, Sweep
 from twin.tolerance import Tolerance
 from twin.tools.shape import ToolShape, tool_shape

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.errors import StockError
-from twin.geometry.region import Region
+from twin.geometry.polygons.region import Region
 from twin.motion.sweep import Body, Sweep
 from twin.tools.shape import tool_shape
 from twin.workpiece import contour_kernels, lattice_kernels

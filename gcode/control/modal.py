@@ -1,0 +1,185 @@
+"""Words of a block -> `Command`: every code looked up, modal groups checked, every word claimed by what takes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+from gcode.control.state import AXES, State
+from gcode.dialects import Dialect
+from gcode.dialects.codes import CodeRule, Status
+from gcode.language.blocks import ParsedBlock, Word
+
+#: Phases that a plain word (no G or M) asks for.
+_PHASE_OF_LETTER: Mapping[str, str] = {"F": "feed", "S": "speed", "T": "tool"}
+#: Phases that a word asks for only where it is free to stand in any block.
+_PHASE_OF_FREE_LETTER: Mapping[str, str] = {"H": "length", "D": "radius"}
+#: Groups whose codes take the axis words of the blocks that follow.
+_MOTION_GROUPS = frozenset({"motion", "motion-cancel", "cycle"})
+#: Letters that are free to stand beside another one: which spindle an S is for.
+_COMPANIONS: Mapping[str, str] = {"S": "$"}
+#: Motion codes that hold for their own block only.
+_NOT_MODAL = frozenset({"G5", "G5.1"})
+#: Codes after whose motions a corner may be cut or rounded.
+_CORNERED = frozenset({"G1", "G2", "G3"})
+
+
+class Use(NamedTuple):
+    """A code of a block, and the word that wrote it."""
+
+    rule: CodeRule
+    word: Word
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One block, ready for execution.
+
+    Attributes:
+        block: the block as parsed.
+        uses: its codes in their order.
+        words: its other words by letter.
+        phases: what is to be done, in the dialect's order of execution.
+    """
+
+    block: ParsedBlock
+    uses: tuple[Use, ...]
+    words: Mapping[str, Word]
+    phases: tuple[str, ...]
+
+    def of_phase(self, phase: str) -> tuple[Use, ...]:
+        """The codes that `phase` executes."""
+        return tuple(use for use in self.uses if use.rule.phase == phase)
+
+    def code(self, name: str) -> Use | None:
+        """The use of one code, None where the block does not hold it."""
+        return next((use for use in self.uses if use.rule.code == name), None)
+
+
+@lru_cache(maxsize=4096)
+def code_name(letter: str, value: float) -> str:
+    """Canonical name of a code: ``G1`` for G01, ``G54.1`` for G54.1."""
+    return f"{letter}{value:.12g}"
+
+
+def resolve(state: State, block: ParsedBlock) -> Command:
+    """Looks up and checks what a block asks for; nothing is executed.
+
+    Raises:
+        GcodeError: for an unknown or refused code or letter, two codes of one modal group, a letter given twice, a
+            word that nothing in the block takes, and axis words that two codes want or none does.
+    """
+    dialect = state.control.dialect
+    uses: list[Use] = []
+    words: dict[str, Word] = {}
+    repeated: tuple[Word, Word] | None = None
+    for word in block.words:
+        if word.letter in "GM":
+            uses.append(Use(_rule(dialect, block, word), word))
+            continue
+        if word.letter in words and repeated is None:
+            repeated = (words[word.letter], word)
+        words[word.letter] = word
+    if len(uses) > 1:
+        _check_groups(block, uses)
+    if repeated and not any(use.rule.letters == "*" for use in uses):
+        first, second = repeated
+        problem = f"{second.letter} is given twice: {first.text} and {second.text}"
+        raise block.error(second, "repeated-word", problem, f"one {second.letter} in a block")
+    moves = _claim_words(state, block, uses, words)
+    _check_needs(block, uses, words)
+    return Command(block, tuple(uses), words, _phases(dialect, uses, words, moves))
+
+
+def _rule(dialect: Dialect, block: ParsedBlock, word: Word) -> CodeRule:
+    """The rule of a code word; refuses what the dialect does not know or does not support."""
+    rule = dialect.codes.get(code_name(word.letter, word.value))
+    if rule is None:
+        problem = f"{word.text} is no code of the {dialect.name} dialect"
+        raise block.error(word, "unknown-code", problem)
+    if rule.status is Status.REFUSED:
+        raise block.error(word, "unsupported-code", f"{word.text} ({rule.meaning}) is not supported")
+    return rule
+
+
+def _check_groups(block: ParsedBlock, uses: list[Use]) -> None:
+    first: dict[str, Word] = {}
+    for rule, word in uses:
+        for group in rule.groups:
+            if group in first:
+                problem = f"{first[group].text} and {word.text} are both of the modal group {group}"
+                raise block.error(word, "group-conflict", problem, "one code of a group in a block")
+            first[group] = word
+
+
+def _claim_words(state: State, block: ParsedBlock, uses: list[Use], words: Mapping[str, Word]) -> bool:
+    """Finds for every word what takes it.
+
+    Returns:
+        True where the words left to the active motion code make a motion.
+    """
+    dialect = state.control.dialect
+    claimed = dialect.free_letters + "".join(_COMPANIONS.get(letter, "") for letter in words)
+    motion = dialect.codes["G80" if state.modes.motion in _NOT_MODAL else state.modes.motion]
+    owner: Use | None = None
+    explicit: Use | None = None
+    for use in uses:
+        if not _MOTION_GROUPS.isdisjoint(use.rule.groups):
+            if explicit is None or use.rule.code != "G80":
+                motion, explicit = use.rule, use
+            continue
+        if use.rule.letters == "*":
+            return False
+        claimed += use.rule.letters
+        owner = use if use.rule.takes_axes else owner
+    if explicit and explicit.rule.code == "G80" and "cycle" in explicit.rule.groups:
+        motion = dialect.codes[state.modes.base_motion]
+    if owner and explicit and not dialect.one_shot_with_motion:
+        problem = f"{owner.word.text} and {explicit.word.text} both take the axis words"
+        raise block.error(explicit.word, "axis-conflict", problem, "one of them in a block")
+    rest = [word for letter, word in words.items() if letter not in claimed]
+    if owner is None and motion.letters:
+        corners = dialect.corner_letters if motion.code in _CORNERED else ()
+        left, rest = rest, [w for w in rest if w.letter not in motion.letters and w.letter not in corners]
+        _check_rest(state, block, uses, rest)
+        return len(left) > len(rest) or (explicit is not None and dialect.explicit_code_moves)
+    _check_rest(state, block, uses, rest)
+    return False
+
+
+def _check_needs(block: ParsedBlock, uses: list[Use], words: Mapping[str, Word]) -> None:
+    for rule, word in uses:
+        for letter in rule.needs:
+            if letter not in words:
+                problem = f"{word.text} without {letter}"
+                raise block.error(word, "missing-word", problem, f"{' and '.join(rule.needs)} beside it")
+
+
+def _check_rest(state: State, block: ParsedBlock, uses: list[Use], rest: list[Word]) -> None:
+    """Refuses the first word that nothing takes."""
+    if not rest:
+        return
+    word, dialect = rest[0], state.control.dialect
+    if word.letter in dialect.refused_letters:
+        problem = f"{word.text}: {dialect.refused_letters[word.letter]}, which is not supported"
+        raise block.error(word, "unsupported-word", problem)
+    if word.letter in AXES + dialect.extra_axes and not any(use.rule.takes_axes for use in uses):
+        problem = f"{word.text} without a motion code that takes it"
+        raise block.error(word, "axis-without-motion", problem, "G0, G1, G2 or G3")
+    raise block.error(word, "unused-word", f"{word.text} belongs to no code in this block or active")
+
+
+def _phases(dialect: Dialect, uses: list[Use], words: Mapping[str, Word], moves: bool) -> tuple[str, ...]:
+    """What the block asks for, in the dialect's order."""
+    asked = {_PHASE_OF_LETTER[letter] for letter in words if letter in _PHASE_OF_LETTER}
+    asked.update(use.rule.phase for use in uses)
+    for letter, phase in _PHASE_OF_FREE_LETTER.items():
+        if letter in words and (letter in dialect.free_letters or phase in asked):
+            asked.add(phase)
+    if moves:
+        asked.add("motion")
+    if len(asked) == 1:
+        return tuple(asked - {""})
+    return tuple(phase for phase in dialect.order if phase in asked)

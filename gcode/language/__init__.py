@@ -1,0 +1,1 @@
+"""Lines of text to words, expressions and statements, each with its column."""

@@ -1,0 +1,115 @@
+"""What the parser hands on: one block of a program as words with their places, nothing interpreted yet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+from gcode.errors import GcodeError, Place
+from gcode.language.expressions import EvaluationError, Expression, Scope
+from gcode.language.functions import rounded
+from gcode.language.statements import Assignment, Statement
+
+
+class Word(NamedTuple):
+    """One word of a block: an address letter and its number.
+
+    Attributes:
+        letter: address letter in upper case; with a comma before it for ``,C`` and ``,R``.
+        value: the number, in the program's units; 0 where `expression` gives it.
+        text: the word in upper case and without blanks, as error messages name it.
+        column: column of the letter in the line, counted from 1.
+        expression: what gives the number; None where it stands there.
+    """
+
+    letter: str
+    value: float
+    text: str
+    column: int
+    expression: Expression | None = None
+
+    @property
+    def has_point(self) -> bool:
+        """True where the number was written with a decimal point, or worked out."""
+        return "." in self.text or "#" in self.text or "[" in self.text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParsedBlock:
+    """One block of a program, taken apart.
+
+    Attributes:
+        place: file, line and text of the block; its column is 1.
+        words: the words in their order, N and O included.
+        assignments: ``#i = ...`` of the block, which take effect once all its words were read.
+        statement: what it says instead of words, None for a block of words.
+        comments: texts of the comments without their brackets or semicolon.
+        deleted: True where a block delete slash was obeyed; then ``words`` is empty.
+        percent: True for a line that is a percent sign.
+        name: ``<NAME>`` of a program, behind O or M98.
+        plain: True where the words are all plain numbers.
+    """
+
+    place: Place
+    words: tuple[Word, ...] = ()
+    assignments: tuple[Assignment, ...] = ()
+    statement: Statement | None = None
+    comments: tuple[str, ...] = ()
+    deleted: bool = False
+    percent: bool = False
+    name: str | None = None
+    plain: bool = True
+
+    def place_of(self, word: Word | None) -> Place:
+        """Place of one word of this block, or of the block itself for None."""
+        return self.place if word is None else replace(self.place, column=word.column)
+
+    def place_at(self, column: int) -> Place:
+        """Place of a column of this block."""
+        return replace(self.place, column=column)
+
+    def error(self, word: Word | None, code: str, problem: str, expected: str = "") -> GcodeError:
+        """The error that refuses this block because of `word` (None: because of the block as a whole)."""
+        return GcodeError(self.place_of(word), code, problem, expected)
+
+    def error_at(self, column: int, code: str, problem: str, expected: str = "") -> GcodeError:
+        """The error that refuses this block because of what stands at `column`."""
+        return GcodeError(self.place_at(column), code, problem, expected)
+
+    def evaluated(self, scope: Scope, *, exact: bool = False) -> ParsedBlock:
+        """The block with plain numbers; words whose value is vacant are left out.
+
+        Args:
+            scope: values of variables, and to what the numbers of each address are rounded.
+            exact: True where nothing is rounded.
+
+        Raises:
+            GcodeError: for a word whose expression has no value.
+        """
+        words: list[Word] = []
+        for word in self.words:
+            if word.expression is None:
+                words.append(word)
+                continue
+            value = self.value_of(word.expression, scope)
+            if value is not None:
+                steps = 0 if exact else scope.steps(word.letter)
+                words.append(word._replace(value=rounded(value, steps) if steps else value, expression=None))
+        return replace(self, words=tuple(words), plain=True)
+
+    def value_of(self, expression: Expression, scope: Scope) -> float | None:
+        """Value of an expression of this block.
+
+        Raises:
+            GcodeError: where it has none.
+        """
+        result: float | None = self.guarded(expression.evaluate, scope)
+        return result
+
+    def guarded(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """The result of a function whose `EvaluationError` becomes an error of this block."""
+        try:
+            return function(*arguments)
+        except EvaluationError as error:
+            raise self.error_at(error.column or 1, error.code, error.problem, error.expected) from None

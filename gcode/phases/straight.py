@@ -1,0 +1,38 @@
+"""One straight motion as an event; what every other kind of motion is made of."""
+
+from __future__ import annotations
+
+import math
+
+from gcode.control.modal import Command
+from gcode.control.state import State
+from gcode.events import Extra, LinearMotion, Point
+from gcode.phases.modes import Result
+from gcode.phases.targets import feed_mm_min, moved_to, settled
+
+
+def straight(
+    state: State,
+    command: Command,
+    end: Point,
+    *,
+    rapid: bool,
+    extra: Extra | None = None,
+    tapping: bool = False,
+) -> Result:
+    """A straight motion to `end` (controlled point, machine coordinates), also where that is where the tool is."""
+    start = state.position_mm
+    feed = 0.0 if rapid else feed_mm_min(state, command, math.dist(start, end))
+    state = settled(state, command)
+    after = moved_to(state, end, extra)
+    event = LinearMotion(
+        place=command.block.place,
+        state=state.machine,
+        start_mm=start,
+        end_mm=end,
+        rapid=rapid,
+        feed_mm_min=feed,
+        tapping=tapping,
+        extra=after.extra,
+    )
+    return after, (event,)

@@ -1,0 +1,1 @@
+"""What is said about a program: statistics, JSON, plots, places with a caret."""

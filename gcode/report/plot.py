@@ -1,0 +1,241 @@
+"""A program's path as a picture; needs matplotlib, which is imported only here and only when a picture is drawn.
+
+Points are projected before they are drawn, so that all axes have one scale in every view.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gcode.events import ArcMotion, Event, LinearMotion
+from gcode.report.path import points_mm
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+View: TypeAlias = Literal["iso", "xy", "xz", "yz"]
+ColourBy: TypeAlias = Literal["z", "tool"]
+_Array: TypeAlias = NDArray[np.float64]
+
+#: Endings of the pictures that can be written.
+SUFFIXES = (".png", ".svg", ".pdf")
+
+_ROOT2, _ROOT6 = math.sqrt(2.0), math.sqrt(6.0)
+#: Rows that take x, y, z to the picture's right and up; iso looks from the front right above, along (-1, 1, -1).
+_PROJECTIONS: Mapping[str, _Array] = MappingProxyType(
+    {
+        "iso": np.array(((1 / _ROOT2, 1 / _ROOT2, 0.0), (-1 / _ROOT6, 1 / _ROOT6, 2 / _ROOT6))),
+        "xy": np.array(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))),
+        "xz": np.array(((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))),
+        "yz": np.array(((0.0, 1.0, 0.0), (0.0, 0.0, 1.0))),
+    }
+)
+_RAPID = "#9aa0a6"
+_INK = "#3c4043"
+_TOOLS = ("#1f77b4", "#d95f02", "#2a9d5c", "#c2378f", "#7a5bc4", "#a6761d", "#16a3b8", "#c23b31", "#6b7a1f", "#5b6770")
+
+
+class PlotError(Exception):
+    """A picture that cannot be drawn; the text says why."""
+
+
+def check_picture(out: Path) -> None:
+    """Refuse before the work what cannot be written after it.
+
+    Raises:
+        PlotError: for a name that does not end in one of `SUFFIXES`, a missing folder, and without matplotlib.
+    """
+    if out.suffix.lower() not in SUFFIXES:
+        raise PlotError(f"{out}: expected a file name that ends in {', '.join(SUFFIXES)}")
+    if not out.absolute().parent.is_dir():
+        raise PlotError(f"{out}: there is no folder {out.parent}")
+    if importlib.util.find_spec("matplotlib") is None:
+        raise PlotError("matplotlib, which draws the picture, is not installed; pip install 'machining-twin[plot]'")
+
+
+def plot_path(
+    events: Iterable[Event],
+    out: Path,
+    *,
+    view: View = "iso",
+    colour: ColourBy = "z",
+    tolerance_mm: float = 0.01,
+    title: str = "",
+) -> None:
+    """Draw the motions among events.
+
+    Args:
+        out: picture to write, its kind by its ending.
+        view: ``iso``, or the plane that is seen.
+        colour: what the colour of a motion at a feed tells: its height, or its tool.
+        tolerance_mm: how far chords may lie off arcs, mm.
+        title: above the picture.
+
+    Raises:
+        PlotError: without any motion, for what `check_picture` refuses, and where the file cannot be written.
+        GcodeError: where the program is refused.
+    """
+    check_picture(out)
+    path = _path_of(events, tolerance_mm)
+    if not path.rapids and not path.feeds:
+        raise PlotError(f"{title or 'the program'}: no motion to draw")
+    try:
+        _figure(path, view, colour, title).savefig(out, dpi=160, bbox_inches="tight", pad_inches=0.2)
+    except OSError as error:
+        raise PlotError(f"{out}: cannot be written: {error.strerror or error}") from None
+
+
+@dataclass(slots=True)
+class _Path:
+    """Polylines: motions that follow each other, of one kind and tool.
+
+    Attributes:
+        rapids: of positioning motions.
+        feeds: of motions at a feed, by tool.
+    """
+
+    rapids: list[_Array] = field(default_factory=list)
+    feeds: dict[int, list[_Array]] = field(default_factory=dict)
+
+    def points(self) -> _Array:
+        """All points."""
+        return np.concatenate([*self.rapids, *(line for lines in self.feeds.values() for line in lines)])
+
+
+def _path_of(events: Iterable[Event], tolerance_mm: float) -> _Path:
+    path = _Path()
+    run: list[_Array] = []
+    kind: tuple[bool, int] | None = None
+    for event in events:
+        if not isinstance(event, LinearMotion | ArcMotion):
+            continue
+        rapid = isinstance(event, LinearMotion) and event.rapid
+        if run and (kind != (rapid, event.state.tool) or tuple(run[-1][-1]) != event.start_mm):
+            _add(path, kind, run)
+            run = []
+        kind = (rapid, event.state.tool)
+        points = points_mm(event, tolerance_mm)
+        run.append(points[1:] if run else points)
+    _add(path, kind, run)
+    return path
+
+
+def _add(path: _Path, kind: tuple[bool, int] | None, run: Sequence[_Array]) -> None:
+    if kind is not None and run:
+        rapid, tool = kind
+        (path.rapids if rapid else path.feeds.setdefault(tool, [])).append(np.concatenate(run))
+
+
+def _figure(path: _Path, view: View, colour: ColourBy, title: str) -> Figure:
+    from matplotlib.figure import Figure
+
+    points = path.points()
+    bounds = points.min(axis=0), points.max(axis=0)
+    width, height = np.ptp(_corners(*bounds) @ _PROJECTIONS[view].T, axis=0) + 1e-9
+    ratio = min(max(height / width, 0.35), 1.4)
+    figure = Figure(figsize=(9.0, 9.0 * ratio + 1.2), layout="constrained")
+    axes = figure.add_subplot()
+    _draw_rapids(axes, path, view)
+    if colour == "tool":
+        _draw_by_tool(axes, path, view)
+    else:
+        _draw_by_height(figure, axes, path, view)
+    _dress(axes, bounds, view, title)
+    if path.rapids or colour == "tool":
+        axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.04), ncols=6, frameon=False, fontsize=8, labelcolor=_INK)
+    return figure
+
+
+def _draw_rapids(axes: Axes, path: _Path, view: View) -> None:
+    from matplotlib.collections import LineCollection
+
+    if path.rapids:
+        lines = [line @ _PROJECTIONS[view].T for line in path.rapids]
+        style: dict[str, Any] = {"colors": _RAPID, "linewidths": 0.7, "linestyles": (0, (5, 3)), "zorder": 1}
+        axes.add_collection(LineCollection(lines, label="rapid", **style))
+
+
+def _draw_by_tool(axes: Axes, path: _Path, view: View) -> None:
+    from matplotlib.collections import LineCollection
+
+    for index, (tool, lines) in enumerate(sorted(path.feeds.items())):
+        flat = [line @ _PROJECTIONS[view].T for line in lines]
+        name = f"T{tool}" if tool else "feed, no tool"
+        made = LineCollection(flat, colors=_TOOLS[index % len(_TOOLS)], linewidths=0.9, zorder=2, label=name)
+        axes.add_collection(made)
+
+
+def _draw_by_height(figure: Figure, axes: Axes, path: _Path, view: View) -> None:
+    """Each chord in the colour of its middle's height, the lower ones first where seen from above."""
+    from matplotlib import colormaps
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import ListedColormap
+
+    lines = [line for of_tool in path.feeds.values() for line in of_tool]
+    if not lines:
+        return
+    chords = np.concatenate([np.stack((line[:-1], line[1:]), axis=1) for line in lines])
+    heights = chords[:, :, 2].mean(axis=1)
+    order = np.argsort(heights, kind="stable")
+    colours = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))  # its last tenth is faint on white
+    made = LineCollection(list(chords[order] @ _PROJECTIONS[view].T), cmap=colours, linewidths=0.9, zorder=2)
+    made.set_array(heights[order])
+    made.set_capstyle("round")
+    axes.add_collection(made)
+    if np.ptp(heights) > 1e-6:
+        bar = figure.colorbar(made, ax=axes, shrink=0.7, pad=0.02, aspect=30)
+        bar.set_label("Z, mm", color=_INK)
+        bar.ax.tick_params(labelsize=8, colors=_INK)
+        bar.outline.set_visible(False)
+
+
+def _corners(low: _Array, high: _Array) -> _Array:
+    """The eight corners of a box."""
+    return np.stack(np.meshgrid(*zip(low, high, strict=True), indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def _dress(axes: Axes, bounds: tuple[_Array, _Array], view: View, title: str) -> None:
+    """Scale, limits, labels."""
+    flat = _corners(*bounds) @ _PROJECTIONS[view].T
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    margin = 0.05 * max(*(high - low), 1e-3)
+    axes.set_xlim(low[0] - margin, high[0] + margin)
+    axes.set_ylim(low[1] - margin, high[1] + margin)
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_title(title, loc="left", fontsize=11, color=_INK)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    if view == "iso":
+        axes.set_xticks([])
+        axes.set_yticks([])
+        _draw_box(axes, *bounds, view)
+        return
+    axes.set_xlabel(f"{view[0].upper()}, mm", color=_INK)
+    axes.set_ylabel(f"{view[1].upper()}, mm", color=_INK)
+    axes.tick_params(labelsize=8, colors=_INK, length=0)
+    axes.grid(color="#e3e5e8", linewidth=0.6, zorder=0)
+    axes.set_axisbelow(True)
+
+
+def _draw_box(axes: Axes, low: _Array, high: _Array, view: View) -> None:
+    """The three edges of the path's box that meet in its lowest corner at the left, with their lengths."""
+    for axis, name in enumerate("XYZ"):
+        far = low.copy()
+        far[axis] = high[axis]
+        if far[axis] - low[axis] < 1e-9:
+            continue
+        ends = np.array((low, far)) @ _PROJECTIONS[view].T
+        axes.plot(*ends.T, color="#c4c7cc", linewidth=0.8, zorder=0)
+        text = f"{name} {low[axis]:.6g} to {high[axis]:.6g}"
+        behind = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8}
+        axes.annotate(text, ends.mean(axis=0), fontsize=7, color=_INK, ha="center", va="center", zorder=3, bbox=behind)

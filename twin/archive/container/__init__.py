@@ -1,0 +1,1 @@
+"""An MCAP file that grows safely: chunks, interrupts, partial files."""

@@ -1,0 +1,1 @@
+"""Passes over a part: contours, scans, roughing, semi-finishing, finishing."""

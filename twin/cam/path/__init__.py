@@ -1,0 +1,1 @@
+"""From passes to a program: links, entries, order, arcs, times, NC text."""

@@ -1,0 +1,1 @@
+"""What tools can reach, and what they leave: volume, thickness, location."""

@@ -1,0 +1,176 @@
+"""Material left on a part, as connected regions over slices: how much, how thick, where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from twin.arrays import FloatArray
+from twin.geometry.mesh.closest import ClosestPoints
+from twin.geometry.polygons.pieces import Pieces
+from twin.geometry.polygons.shapes import Shapes
+from twin.workpiece.store import PLANE_AXES
+
+#: Numbers of pieces that are neighbours.
+Pairs: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64]]
+#: A piece on a plane counts when its mean width is above this part of the pitch.
+_WIDTH_PITCHES = 0.01
+#: A piece is wide when its area is above this part of its outline's length squared (1/16 for a square).
+_WIDE = 0.005
+#: Pieces on neighbouring planes that are this many pitches apart belong together: thin regions may lie aslant.
+_NEAR_PITCHES = 3.0
+#: Pieces that are nowhere thicker than this part of what counts are left out.
+_TIES = 0.125
+#: Pieces beside a region that get thinner from plane to plane belong to it down to this part of what counts.
+_FADES = 1.0 / 32.0
+#: Places on the outline of a piece where its thickness is measured, at most.
+_MEASURED = 128
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Leftover:
+    """One connected region of material that stays.
+
+    Attributes:
+        volume_mm3: of its slices, each with its area as far as it stands for the region.
+        thickness_mm: largest distance from the part.
+        deepest_mm: where that is, shape (3,).
+        low_mm, high_mm: corners of its box, shape (3,).
+        centroid_mm: shape (3,).
+        axis: normal of its slices.
+        planes_mm: position of each of its pieces.
+        slabs_mm: shape (n, 2), from where to where each piece stands for the region.
+        pieces: polygons, one or more a plane.
+    """
+
+    volume_mm3: float
+    thickness_mm: float
+    deepest_mm: FloatArray
+    low_mm: FloatArray
+    high_mm: FloatArray
+    centroid_mm: FloatArray
+    axis: int
+    planes_mm: FloatArray
+    slabs_mm: FloatArray
+    pieces: Shapes
+
+
+def leftovers(
+    left: Shapes,
+    planes_mm: FloatArray,
+    slabs_mm: FloatArray,
+    axis: int,
+    surface: ClosestPoints,
+    thin_mm: float,
+    threads: int | None = None,
+) -> tuple[Leftover, ...]:
+    """Connect what is left on planes to regions.
+
+    Args:
+        left: what is left on each plane.
+        planes_mm: their positions along ``axis``, evenly spaced.
+        slabs_mm: shape (n, 2), from where to where each plane stands for the part, without gaps.
+        axis: normal of the planes.
+        surface: the part's.
+        thin_mm: regions nowhere thicker than this are left out.
+        threads: threads to measure with, all cores if not given.
+
+    Returns:
+        The regions, the largest first.
+    """
+    pitch_mm = float(slabs_mm[-1, 1] - slabs_mm[0, 0]) / len(slabs_mm)
+    pieces = Pieces.of(left, _WIDTH_PITCHES * pitch_mm)
+    if len(pieces.shapes) == 0:
+        return ()
+    flat, of = _measured(pieces)
+    points = _in_space(flat, planes_mm[pieces.planes[of]], axis)
+    distance = np.abs(surface.ask(points, threads).distance_mm)
+    thick = np.zeros(len(pieces.shapes))
+    np.maximum.at(thick, of, distance)
+    # what is thinner everywhere would only tie regions together
+    kept = np.flatnonzero(thick > _TIES * thin_mm)
+    if len(kept) == 0:
+        return ()
+    pairs = pieces.near_pairs(_NEAR_PITCHES * pitch_mm)
+    labels = _faded(_connected(pairs, kept, len(thick)), pairs, np.where(thick > _FADES * thin_mm, thick, 0.0))
+    found = []
+    for label in range(labels.max() + 1):
+        places = np.flatnonzero(labels[of] == label)
+        deepest = places[np.argmax(distance[places])]
+        if distance[deepest] > thin_mm:
+            part = pieces.some(np.flatnonzero(labels == label))
+            thickest = float(distance[deepest]), points[deepest]
+            found.append(_leftover(part, planes_mm[part.planes], slabs_mm[part.planes], axis, *thickest))
+    return tuple(sorted(found, key=lambda r: -r.volume_mm3))
+
+
+def _measured(pieces: Pieces) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Places where thickness is measured, and the piece of each: on outlines, and in the middle of wide pieces."""
+    (points, of), (middles, fat) = pieces.outline_points(_MEASURED), pieces.middles(_WIDE)
+    return np.concatenate((points, middles)), np.concatenate((of, fat))
+
+
+def _leftover(
+    pieces: Pieces, planes_mm: FloatArray, slabs_mm: FloatArray, axis: int, thickness_mm: float, deepest_mm: FloatArray
+) -> Leftover:
+    volumes, bounds = pieces.areas_mm2 * (slabs_mm[:, 1] - slabs_mm[:, 0]), pieces.bounds_mm
+    share = volumes / volumes.sum()
+    return Leftover(
+        volume_mm3=float(volumes.sum()),
+        thickness_mm=thickness_mm,
+        deepest_mm=deepest_mm,
+        low_mm=_in_space(bounds[:, :2].min(axis=0), float(slabs_mm.min()), axis),
+        high_mm=_in_space(bounds[:, 2:].max(axis=0), float(slabs_mm.max()), axis),
+        centroid_mm=_in_space(share @ pieces.centroids_mm, float(share @ slabs_mm.mean(axis=1)), axis),
+        axis=axis,
+        planes_mm=planes_mm,
+        slabs_mm=slabs_mm,
+        pieces=pieces.shapes,
+    )
+
+
+def _in_space(points: FloatArray, planes: FloatArray | float, axis: int) -> FloatArray:
+    """Points of planes, shape (..., 2), in (x, y, z)."""
+    space = np.empty((*points.shape[:-1], 3))
+    space[..., list(PLANE_AXES[axis])] = points
+    space[..., axis] = planes
+    return space
+
+
+def _connected(pairs: Pairs, kept: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Number of the region of each kept piece, -1 for others: what overlaps, or nearly so, on neighbouring planes.
+
+    Args:
+        pairs: neighbours among all pieces.
+        count: number of all pieces.
+    """
+    number = np.full(count, -1, dtype=np.int64)
+    number[kept] = np.arange(len(kept))
+    one, other = number[pairs[0]], number[pairs[1]]
+    both = (one >= 0) & (other >= 0)
+    graph = coo_array((np.ones(int(both.sum()), dtype=np.int8), (one[both], other[both])), shape=(len(kept),) * 2)
+    labels = np.full(count, -1, dtype=np.int64)
+    labels[kept] = connected_components(graph, directed=False)[1]
+    return labels
+
+
+def _faded(labels: NDArray[np.int64], pairs: Pairs, thick_mm: FloatArray) -> NDArray[np.int64]:
+    """Regions with their thin ends: from plane to plane, as long as there is a thinner piece beside the last one.
+
+    A piece beside two regions belongs to that whose piece is the thicker.
+    """
+    labels = labels.copy()
+    one, other = np.concatenate((pairs[0], pairs[1])), np.concatenate((pairs[1], pairs[0]))
+    thinner = (thick_mm[other] > 0.0) & (thick_mm[other] < thick_mm[one])
+    one, other = one[thinner], other[thinner]
+    while True:
+        ends = np.flatnonzero((labels[one] >= 0) & (labels[other] < 0))
+        if len(ends) == 0:
+            return labels
+        ends = ends[np.argsort(thick_mm[one[ends]], kind="stable")]
+        labels[other[ends]] = labels[one[ends]]

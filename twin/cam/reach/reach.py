@@ -1,0 +1,109 @@
+"""What a tool cannot reach: the part inflated, shrunk again, and compared (the tri-slice paper, section 3.2).
+
+The inflated part is where the tool's reference point may not be; everything else is swept with the tool and taken away.
+What is left and is no part of the part, the tool cannot remove. With a ball about its centre the tool may come from any
+side; with a tool about its tip it comes from above, and what lies below an overhang is out of reach.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from twin.arrays import FloatArray
+from twin.cam.reach.leftover import Leftover, leftovers
+from twin.cam.reach.slabs import slabs_mm
+from twin.cam.reach.tool_positions import even_places, tool_places
+from twin.cam.slices.element import StructuringElement
+from twin.cam.slices.offset import CHORD_PITCHES, away, frame_boxes, towards
+from twin.cam.slices.sections import Sections, SlicedPart
+from twin.geometry.mesh.closest import ClosestPoints
+from twin.geometry.polygons.convolution import Convolution
+from twin.geometry.polygons.shapes import Shapes, boundaries, minus, to_shapes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reach:
+    """What one tool leaves on a part.
+
+    Attributes:
+        element: the tool.
+        axis: normal of the slices it was found on.
+        pitch_mm: their distance.
+        thin_mm: what is nowhere thicker than this is noise of the slices and left out.
+        leftovers: connected regions that stay, the largest first.
+    """
+
+    element: StructuringElement
+    axis: int
+    pitch_mm: float
+    thin_mm: float
+    leftovers: tuple[Leftover, ...]
+
+    @property
+    def volume_mm3(self) -> float:
+        """Material that stays."""
+        return sum((r.volume_mm3 for r in self.leftovers), 0.0)
+
+    @property
+    def thickness_mm(self) -> float:
+        """Where it is thickest, distance from the part; 0 where nothing stays."""
+        return max((r.thickness_mm for r in self.leftovers), default=0.0)
+
+
+def unmachinable(
+    part: SlicedPart,
+    element: StructuringElement,
+    *,
+    axis: int = 2,
+    thin_mm: float | None = None,
+    threads: int | None = None,
+) -> Reach:
+    """What a tool leaves on a part.
+
+    Args:
+        element: `StructuringElement.ball` for a ball that may come from any side, `StructuringElement.tool` for a tool
+            from above.
+        axis: normal of the slices to work on; 2 for tools from above.
+        thin_mm: least thickness that counts; `thin_bound_mm` where not told.
+        threads: threads to work with, all cores if not given; results do not depend on it.
+
+    Raises:
+        ValueError: a tool from above on slices that do not lie across z.
+    """
+    if axis != 2 and not element.centred:
+        raise ValueError(f"tools from above need slices across z, got axis {axis}")
+    pitch = float(part.slices.pitch_mm[axis])
+    least = thin_bound_mm(element, pitch) if thin_mm is None else thin_mm
+    sections = part.sections(axis)
+    planes = part.slices.positions_mm(axis)
+    closed = _closed(part, sections, planes, element, threads)
+    own = to_shapes(part.slices.regions[axis])
+    left = minus(closed, own)
+    surface = ClosestPoints(part.mesh.vertices_mm, part.mesh.triangles, part.mesh.edges)
+    found = leftovers(left, planes, slabs_mm(part.mesh, axis, planes, pitch), axis, surface, least, threads)
+    return Reach(element=element, axis=axis, pitch_mm=pitch, thin_mm=least, leftovers=found)
+
+
+def thin_bound_mm(element: StructuringElement, pitch_mm: float) -> float:
+    """Thickness up to which leftovers may come from the slices' pitch alone.
+
+    Where a surface lies nearly along the slices these know it to about half a pitch; the tool's sweep over it between
+    two planes misses as much again, less what its radius bridges. `tool_positions` adds planes where that would
+    be the tool's deepest places.
+    """
+    return min(pitch_mm, 0.5 * pitch_mm + pitch_mm**2 / element.radius_mm)
+
+
+def _closed(
+    part: SlicedPart, sections: Sections, planes: FloatArray, element: StructuringElement, threads: int | None
+) -> Shapes:
+    """Sections of what stays: everything that no position of the tool reaches, within the part's box."""
+    axis, pitch = sections.axis, float(part.slices.pitch_mm[sections.axis])
+    outer, box = frame_boxes(part.slices, axis, element)
+    radius, chord = element.radius_mm, CHORD_PITCHES * pitch
+    shapes, radii = to_shapes(sections.regions), towards(element, axis)
+    inflated = Convolution(shapes, sections.positions_mm, radii, radius, chord, threads=threads)
+    places, walls, free = tool_places(inflated, outer, even_places(part, axis, planes, element), pitch)
+    radii = away(element, axis)
+    swept = Convolution(free, places, radii, radius, chord, threads=threads, edges=boundaries(walls))
+    return minus(box, swept.on(planes))

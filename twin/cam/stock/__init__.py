@@ -1,0 +1,1 @@
+"""Stock in planning: dexels, strokes of tools over them, rest material."""

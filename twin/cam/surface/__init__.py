@@ -1,0 +1,1 @@
+"""A part's triangles seen from above: drop-cutter, surface normals."""

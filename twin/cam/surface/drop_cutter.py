@@ -1,0 +1,243 @@
+"""Exact drop-cutter: the height at which a tool lowered along its axis touches a triangle surface.
+
+Flat, ball, bull and taper tools, on faces, edges and vertices. `drop_cutter_kernels.py` has the method.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from twin.arrays import FloatArray
+from twin.cam.surface import drop_cutter_kernels as kernels
+from twin.cam.surface.surface import Surface, surface_of
+from twin.errors import ToolError
+from twin.geometry.threads import in_parts, run_all
+from twin.tools.shape import ToolShape
+from twin.tools.text import parse_tool
+
+#: Parts of the elements that are listed side by side.
+_LIST_PARTS = 4
+#: Cells of the grid for each face, and the most there may be.
+_CELLS_A_FACE = 1.0
+_MOST_CELLS = 4_000_000
+#: Places in the cells' lists above which the cells are made larger.
+_MOST_ENTRIES = 60_000_000
+
+FACE, EDGE, VERTEX, FLOOR = 0, 1, 2, 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contacts:
+    """Where a dropped tool touches.
+
+    Attributes:
+        z_mm: shape (m,), height of the tool tip.
+        kind: shape (m,), FACE, EDGE, VERTEX or FLOOR.
+        points_mm: shape (m, 3), the contact, NaN on the floor.
+        normals: shape (m, 3), unit normal of the tool's surface there, turned towards the tool; (0, 0, 1) on the floor.
+    """
+
+    z_mm: FloatArray
+    kind: NDArray[np.int8]
+    points_mm: FloatArray
+    normals: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Grid:
+    """Elements by cells of the plan: those whose patches touch it."""
+
+    frame: FloatArray
+    columns: int
+    rows: int
+    begins: NDArray[np.int64]
+    entries: NDArray[np.int32]
+
+
+class DropCutter:
+    """A tool over a surface, ready to be dropped anywhere.
+
+    Args:
+        triangles: the surface, or loose triangles, shape (n, 3, 3), mm.
+        tool: a shape, or text as ``ball D8`` or ``bull D10 rc1``; None for a needle, which gives the surface's height.
+        floor_mm: tip height where nothing is hit, and the least height given; the surface's lowest z where left out.
+        threads: how many work, None for all cores; heights do not depend on it.
+
+    Raises:
+        MeshError: triangles that are none.
+        ToolError: text that names no tool.
+    """
+
+    def __init__(
+        self,
+        triangles: ArrayLike | Surface,
+        tool: ToolShape | str | None,
+        *,
+        floor_mm: float | None = None,
+        threads: int | None = None,
+    ) -> None:
+        self.surface = triangles if isinstance(triangles, Surface) else surface_of(triangles, threads=threads)
+        shape = parse_tool(tool) if isinstance(tool, str) else tool
+        self.tool = shape
+        self.floor_mm = float(self.surface.low_mm[2]) if floor_mm is None else float(floor_mm)
+        if math.isnan(self.floor_mm):
+            raise ToolError("drop-cutter: floor_mm is no number; expected a height, or -inf for none")
+        self._threads = threads
+        self._parameters = np.zeros(7) if shape is None else shape.parameters
+        self._faces = np.empty((len(self.surface.triangles), 10))
+        self._edges = np.empty((len(self.surface.ends), 9))
+        kernels.face_patches(
+            self.surface.vertices_mm, self.surface.triangles, self.surface.normals, self._parameters, self._faces
+        )
+        kernels.edge_patches(self.surface.vertices_mm, self.surface.ends, self._edges)
+        self._grid = self._listed()
+
+    def drop(self, points_mm: ArrayLike, threads: int | None = None) -> FloatArray:
+        """Height of the tool tip over plan points.
+
+        Args:
+            points_mm: shape (m, 2).
+
+        Returns:
+            shape (m,).
+        """
+        return self._dropped(_plan_points(points_mm), threads)[0]
+
+    def contacts(self, points_mm: ArrayLike, threads: int | None = None) -> Contacts:
+        """Heights of the tip, and where the tool touches; of several contacts at one height any is told."""
+        points = _plan_points(points_mm)
+        heights, elements = self._dropped(points, threads)
+        places = np.empty((len(points), 3))
+        kernels.contacts(
+            points,
+            elements,
+            self._parameters,
+            self.surface.triangles,
+            self._faces,
+            self._edges,
+            self.surface.vertices_mm,
+            places,
+        )
+        bounds = np.cumsum([len(self._faces), len(self._edges)])
+        kind = np.where(elements < 0, FLOOR, np.searchsorted(bounds, elements, side="right")).astype(np.int8)
+        normals = self._normals(points, heights, places, elements)
+        return Contacts(heights, kind, places, normals)
+
+    def _normals(
+        self, points: FloatArray, heights: FloatArray, places: FloatArray, elements: NDArray[np.int32]
+    ) -> FloatArray:
+        """Normals of the tool where it touches: the face's own, or that of the meridian at the contact."""
+        normals = np.tile(np.array([0.0, 0.0, 1.0]), (len(points), 1))
+        on_face = (elements >= 0) & (elements < len(self._faces))
+        normals[on_face] = self.surface.normals[elements[on_face]]
+        rest = np.flatnonzero(elements >= len(self._faces))
+        if self.tool is None or len(rest) == 0:
+            return normals
+        across = points[rest] - places[rest, :2]
+        rho = np.hypot(across[:, 0], across[:, 1])
+        kappa = self.tool.kappa_rad(places[rest, 2] - heights[rest])
+        kappa = np.where(rho <= self.tool.disc_mm * (1.0 - 1e-12), 0.0, kappa)
+        unit = across / np.maximum(rho, 1e-300)[:, None]
+        normals[rest] = np.column_stack((unit * np.sin(kappa)[:, None], np.cos(kappa)))
+        return normals
+
+    def _dropped(self, points: FloatArray, threads: int | None) -> tuple[FloatArray, NDArray[np.int32]]:
+        heights = np.empty(len(points))
+        elements = np.empty(len(points), dtype=np.int32)
+        grid = self._grid
+
+        def work(first: int, last: int) -> None:
+            kernels.drop(
+                points,
+                first,
+                last,
+                self.floor_mm,
+                self._parameters,
+                self._faces,
+                self._edges,
+                self.surface.vertices_mm,
+                grid.frame,
+                grid.columns,
+                grid.rows,
+                grid.begins,
+                grid.entries,
+                heights,
+                elements,
+            )
+
+        in_parts(work, len(points), threads=self._threads if threads is None else threads)
+        return heights, elements
+
+    def _listed(self) -> _Grid:
+        """The grid of patches; cells are made larger while their lists would be too long."""
+        radius = float(self._parameters[6])
+        low, high = self.surface.low_mm - radius, self.surface.high_mm + radius
+        extent = np.maximum(high[:2] - low[:2], 1e-3)
+        wanted = min(_MOST_CELLS, max(16.0, _CELLS_A_FACE * len(self.surface.triangles)))
+        size = math.sqrt(float(extent[0] * extent[1]) / wanted)
+        while True:
+            size = max(size, float(extent.max()) / _MOST_CELLS)
+            columns, rows = (int(n) for n in np.ceil(extent / size) + 1)
+            frame = np.array([low[0], low[1], size])
+            counts = np.zeros((_LIST_PARTS, columns * rows), dtype=np.int64)
+            self._list(frame, columns, rows, counts, np.empty(0, dtype=np.int32), fill=False)
+            if counts.sum() <= _MOST_ENTRIES or columns * rows < 64:
+                break
+            size *= 2.0
+        ends = np.cumsum(counts.T.ravel()).reshape(-1, _LIST_PARTS)
+        begins = np.concatenate(([0], ends[:, -1]))
+        entries = np.empty(int(begins[-1]), dtype=np.int32)
+        self._list(frame, columns, rows, np.ascontiguousarray(ends.T - counts), entries, fill=True)
+        return _Grid(frame, columns, rows, begins, entries)
+
+    def _list(
+        self,
+        frame: FloatArray,
+        columns: int,
+        rows: int,
+        counts: NDArray[np.int64],
+        entries: NDArray[np.int32],
+        *,
+        fill: bool,
+    ) -> None:
+        run_all(
+            [partial(self._list_part, k, frame, columns, rows, fill, counts[k], entries) for k in range(_LIST_PARTS)],
+            self._threads,
+        )
+
+    def _list_part(
+        self,
+        part: int,
+        frame: FloatArray,
+        columns: int,
+        rows: int,
+        fill: bool,
+        counts: NDArray[np.int64],
+        entries: NDArray[np.int32],
+    ) -> None:
+        surface, tool = self.surface, self._parameters
+        faces, edges, vertices = len(self._faces), len(self._edges), len(surface.vertices_mm)
+        (f0, f1), (e0, e1), (v0, v1) = [
+            (n * part // _LIST_PARTS, n * (part + 1) // _LIST_PARTS) for n in (faces, edges, vertices)
+        ]
+        list_faces = partial(kernels.list_faces, surface.vertices_mm, surface.triangles, self._faces, f0, f1)
+        list_edges = partial(kernels.list_edges, self._edges, surface.edge_cones_rad, e0, e1, faces, tool)
+        list_vertices = partial(
+            kernels.list_vertices, surface.vertices_mm, surface.vertex_cones, v0, v1, faces + edges, tool
+        )
+        list_faces(frame, columns, rows, fill, counts, entries)
+        if self.tool is not None:
+            list_edges(frame, columns, rows, fill, counts, entries)
+            list_vertices(frame, columns, rows, fill, counts, entries)
+
+
+def _plan_points(points_mm: ArrayLike) -> FloatArray:
+    points = np.ascontiguousarray(points_mm, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ValueError(f"points_mm must have shape (m, 2), got {points.shape}")
+    return points

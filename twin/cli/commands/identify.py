@@ -1,0 +1,152 @@
+"""``twin identify``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from twin.identification.cuts.cuts_file import Cuts
+    from twin.identification.result import Identified
+
+
+class Method(StrEnum):
+    """How coefficients are found."""
+
+    MEAN = "mean"
+    ITERATIVE = "iterative"
+    WAVEFORM = "waveform"
+
+
+def identify(
+    cuts_file: Annotated[Path, typer.Argument(metavar="CUTS", help="File of test cuts (TOML).", show_default=False)],
+    method: Annotated[
+        Method | None, typer.Option(help="Method; the file's, or mean, if not given.", show_default=False)
+    ] = None,
+    holdout: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Report this cut and do not fit it; may be repeated.", show_default=False),
+    ] = None,
+    runout: Annotated[
+        bool | None,
+        typer.Option(
+            "--runout/--no-runout", help="Whether runout is unknown too (waveform); the file's.", show_default=False
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--out",
+            metavar="FILE.toml",
+            help="Write the coefficients here, and a plot beside.",
+            show_default=False,
+        ),
+    ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.png", help="Draw measured and fitted forces here.", show_default=False),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace output files that are there.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Print how each log was read and corrected.")
+    ] = False,
+) -> None:
+    """Find cutting coefficients from test cuts, with their errors.
+
+    mean: linear least squares on mean forces. iterative: search that matches simulated mean forces. waveform: least
+    squares on the force over the revolution, phases found, with --runout the runout too.
+    """
+    from twin.errors import IdentifyError
+    from twin.identification.cuts.load import load_cuts
+    from twin.identification.identify import identify as find
+    from twin.identification.write import refuse_existing
+
+    cuts = load_cuts(cuts_file, holdout=holdout or ())
+    if runout is not None:
+        cuts = cuts.model_copy(update={"fit": cuts.fit.model_copy(update={"runout": runout})})
+    if out is not None and plot is None:
+        plot = out.with_suffix(".png")
+    _check_suffixes(out, plot)
+    refuse_existing([p for p in (out, plot) if p is not None], force=force)
+    with _said() as say:
+        result = find(cuts, method.value if method is not None else None, say)
+    try:
+        _write(result, out, plot, force=force)
+    except IdentifyError:  # what was found tells why no set can be written
+        if not as_json:
+            _print(cuts, result, {}, verbose=verbose)
+            _warn(result)
+        raise
+    if as_json:
+        _print_json(result, out, plot)
+    else:
+        _print(cuts, result, {"Coefficients": out, "Plot": plot}, verbose=verbose)
+    _warn(result)
+
+
+@contextmanager
+def _said() -> Iterator[Callable[[str], None]]:
+    """What is being done, on a terminal."""
+    from rich.markup import escape
+
+    from twin.cli.console import errors
+
+    console = errors()
+    if not console.is_terminal:
+        yield lambda _: None
+        return
+    with console.status("") as status:
+        yield lambda text: status.update(escape(text))
+
+
+def _check_suffixes(out: Path | None, plot: Path | None) -> None:
+    for option, path, suffix in (("--out", out, ".toml"), ("--plot", plot, ".png")):
+        if path is not None and path.suffix.lower() != suffix:
+            raise typer.BadParameter(f"{path}: expected a file name that ends in {suffix}", param_hint=option)
+
+
+def _write(result: Identified, out: Path | None, plot: Path | None, *, force: bool) -> None:
+    from twin.identification.coefficients_toml import coefficients_toml
+    from twin.identification.plot import plot_png
+    from twin.identification.write import write_files
+
+    contents = {}
+    if out is not None:
+        contents[out] = coefficients_toml(result).encode()
+    if plot is not None:
+        contents[plot] = plot_png(result)
+    write_files(contents, force=force)
+
+
+def _print_json(result: Identified, out: Path | None, plot: Path | None) -> None:
+    import json
+
+    from twin.identification.as_json import identified_object
+
+    files = {"coefficients_file": out and str(out), "plot_file": plot and str(plot)}
+    typer.echo(json.dumps(identified_object(result) | files, indent=2, ensure_ascii=False))
+
+
+def _print(cuts: Cuts, result: Identified, files: dict[str, Path | None], *, verbose: bool) -> None:
+    from twin.cli.console import results
+    from twin.cli.show.identify_tables import print_identified
+
+    console = results()
+    print_identified(console, cuts, result, verbose=verbose)
+    for what, path in files.items():
+        if path is not None:
+            console.print(f"{what:<12} {path}", markup=False, soft_wrap=True)
+
+
+def _warn(result: Identified) -> None:
+    from twin.cli.console import warn
+
+    for line in result.warnings:
+        warn(line)

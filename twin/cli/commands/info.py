@@ -1,0 +1,83 @@
+"""``twin info``."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from twin.archive import RunInfo
+
+_WORKPIECE = "/workpiece/"
+
+
+def info(
+    run: Annotated[Path, typer.Argument(metavar="RUN.mcap", help="Archive of a run.", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Tell what an archive holds: program, stock, tools, messages, attached files, and the run's summary."""
+    from twin.archive import run_info
+
+    found = run_info(run)
+    force_on = found.header.parameters.get("output.force_on", "tool")
+    if as_json:
+        import json
+
+        from twin.cli.show.as_json import info_object
+
+        typer.echo(json.dumps(info_object(found, force_on), indent=2, ensure_ascii=False))
+        return
+    from twin.cli.console import results
+    from twin.cli.show.summary import print_summary
+
+    console = results()
+    if found.summary is not None:
+        print_summary(console, found.summary, found.header, (), force_on=force_on)
+    console.print("[bold]The file[/]")
+    console.print(_file_table(found))
+
+
+def _file_table(info: RunInfo) -> Table:
+    """The file itself, a line for each thing in it."""
+    from rich.table import Table
+    from rich.text import Text
+
+    grid = Table.grid(padding=(0, 3))
+    grid.add_column(style="dim", no_wrap=True)
+    for name, text in _file_lines(info):
+        grid.add_row(name, Text(text))
+    return grid
+
+
+def _file_lines(info: RunInfo) -> list[tuple[str, str]]:
+    from twin.cli.show.words import clock, grouped, size
+
+    header = info.header
+    state = "whole" if info.intact else "cut off: what was complete is readable"
+    low, high = header.stock_bounds_mm.tolist()
+    box = ", ".join(f"{axis} {a:g} to {b:g}" for axis, a, b in zip("XYZ", low, high, strict=True))
+    pitch = " x ".join(f"{p:g}" for p in header.slice_pitch_mm)
+    return [
+        ("name", str(info.path)),
+        ("size", f"{size(info.path.stat().st_size)}, {state}"),
+        ("program", header.program),
+        ("covers", f"{clock(info.duration_s)} of {clock(header.planned_time_s)}"),
+        ("stock, mm", f"{box}; slices {pitch} apart"),
+        ("tools", "; ".join(f"T{t.number} {t.description}" for t in header.tools)),
+        *((f"messages {topic}", grouped(n)) for topic, n in _topics(info.counts).items()),
+        *((f"attached {name}", size(n)) for name, n in info.attachments.items()),
+        ("made by", f"twin {header.twin_version}"),
+    ]
+
+
+def _topics(counts: dict[str, int]) -> dict[str, int]:
+    """Messages by topic, the patches of the workpiece as one."""
+    topics: Counter[str] = Counter()
+    for topic, count in sorted(counts.items()):
+        topics[f"{_WORKPIECE}*" if topic.startswith(_WORKPIECE) else topic] += count
+    return dict(topics)

@@ -1,0 +1,57 @@
+"""``twin mesh``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from twin.cli import exit_codes
+
+if TYPE_CHECKING:
+    from twin.workpiece.to_mesh import SurfaceMesh
+
+_ARCHIVE = ".mcap"
+
+
+def mesh(
+    source: Annotated[
+        Path, typer.Argument(metavar="RUN.mcap|JOB", help="Archive of a run, or a job to replay.", show_default=False)
+    ],
+    out: Annotated[Path, typer.Argument(metavar="OUT.stl|.3mf", help="Mesh to write, in mm.", show_default=False)],
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+) -> None:
+    """Write the machined part as a triangle mesh.
+
+    From an archive it is the part as drawn in it; from a job it is meshed from the slices after a replay.
+    """
+    from twin.cli.console import results
+    from twin.workpiece.mesh_file import check_mesh_path, write_mesh
+
+    check_mesh_path(out, force=force)
+    made = _from_run(source) if source.suffix.lower() == _ARCHIVE else _from_job(source)
+    write_mesh(out, made, force=force)
+    results().print(f"{len(made.triangles)} triangles written to {out}", markup=False, soft_wrap=True)
+
+
+def _from_run(run: Path) -> SurfaceMesh:
+    from twin.archive import read_run
+    from twin.cli.show.patches import joined
+    from twin.record import WorkpiecePatch
+
+    last = {record.patch: record for record in read_run(run) if isinstance(record, WorkpiecePatch)}
+    return joined(last.values())
+
+
+def _from_job(job_file: Path) -> SurfaceMesh:
+    from twin.cli.commands.replaying import replay_job
+    from twin.cli.show.progress import progress
+    from twin.job import load_job
+
+    job = load_job(job_file).without_forces()
+    with progress(quiet=False) as line:
+        outcome = replay_job(job, line, at_end=lambda run: run.mesh())
+    if outcome.signal_number is not None or outcome.at_end is None:
+        raise typer.Exit(exit_codes.SIGNAL + (outcome.signal_number or 0))
+    return outcome.at_end

@@ -1,0 +1,115 @@
+"""``twin replay``."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from twin.cli import exit_codes
+
+if TYPE_CHECKING:
+    from twin.cli.commands.replaying import Outcome
+
+
+class Engine(StrEnum):
+    """Implementations of the slices."""
+
+    FAST = "fast"
+    REFERENCE = "reference"
+
+
+def replay(
+    job_file: Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML).", show_default=False)],
+    view: Annotated[bool, typer.Option("--view", help="Show the run in rerun while it is computed.")] = False,
+    rrd: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write a rerun recording here, not to output.rrd.", show_default=False),
+    ] = None,
+    mcap: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write the archive here, not to output.mcap.", show_default=False),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace output files that are there.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="End at the first collision, with exit code 3.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as one JSON object.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="No progress and no summary; warnings and errors are still said.")
+    ] = False,
+    no_forces: Annotated[
+        bool, typer.Option("--no-forces", help="Leave the forces out, whatever coefficients the job has.")
+    ] = False,
+    engine: Annotated[
+        Engine | None,
+        typer.Option(help="Slices: fast, or the plain reference; the job's if not given.", show_default=False),
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option(min=1, max=64, help="Threads; all cores if not given.", show_default=False)
+    ] = None,
+) -> None:
+    """Replay the NC program of a job: remove material, compute forces, keep the run.
+
+    Folders of outputs are made where they are missing. Ctrl-C ends the run with all that was replayed in its outputs;
+    a second one gives them up. A replay that ends by an error leaves no outputs.
+    """
+    from twin.cli.commands.replaying import replay_job
+    from twin.cli.outputs import opened
+    from twin.cli.show.progress import progress
+    from twin.job import load_job
+
+    job = load_job(job_file)
+    job = job.without_forces() if no_forces else job
+    job = job.with_store(engine.value) if engine is not None else job
+    mcap, rrd = mcap or job.output.mcap, rrd or job.output.rrd
+    with opened(mcap, rrd, view=view, force=force) as write, progress(quiet=quiet or as_json) as line:
+        outcome = replay_job(job, line, write, strict=strict, threads=threads)
+    if as_json:
+        _print_json(outcome, {"job": job_file, "mcap": mcap, "rrd": rrd}, job.output.force_on)
+    elif not quiet:
+        _print_summary(outcome, {"archive": mcap, "recording": rrd}, job.output.force_on)
+    _print_warnings(outcome)
+    raise typer.Exit(_exit_code(outcome))
+
+
+def _print_json(outcome: Outcome, files: dict[str, Path | None], force_on: str) -> None:
+    import json
+
+    from twin.cli.show.as_json import replay_object
+
+    names = {key: None if path is None else str(path) for key, path in files.items()}
+    typer.echo(json.dumps(replay_object(outcome, force_on) | names, indent=2, ensure_ascii=False))
+
+
+def _print_summary(outcome: Outcome, files: dict[str, Path | None], force_on: str) -> None:
+    from twin.cli.console import results
+    from twin.cli.show.summary import Timing, print_summary
+
+    watch = outcome.watch
+    timing = Timing(setup_s=outcome.setup_time_s, wall_s=outcome.wall_time_s)
+    console = results()
+    print_summary(console, outcome.summary, watch.header, watch.groups, force_on=force_on, timing=timing)
+    for what, path in files.items():
+        if path is not None:
+            console.print(f"{what.capitalize():<10} {path}", markup=False, soft_wrap=True)
+
+
+def _print_warnings(outcome: Outcome) -> None:
+    from twin.cli.console import fail, warn
+
+    if outcome.refused is not None:
+        fail(f"ended at a collision (--strict): {outcome.refused.message}")
+        return
+    for message in outcome.watch.warnings(outcome.summary):
+        warn(message)
+    if outcome.signal_number is not None:
+        warn(f"stopped at {outcome.summary.machine_time_s:.1f} s of machine time; outputs hold the run up to there")
+
+
+def _exit_code(outcome: Outcome) -> int:
+    if outcome.refused is not None:
+        return exit_codes.COLLISION
+    if outcome.signal_number is not None:
+        return exit_codes.SIGNAL + outcome.signal_number
+    return exit_codes.OK

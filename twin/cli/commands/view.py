@@ -1,0 +1,57 @@
+"""``twin view``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def view(
+    run: Annotated[Path, typer.Argument(metavar="RUN.mcap", help="Archive of a run.", show_default=False)],
+    rrd: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write a rerun recording instead of opening the viewer.", show_default=False),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a recording that is there.")] = False,
+) -> None:
+    """Show an archived run in rerun, as it looked while it was computed; or an archived comparison."""
+    from twin.archive.comparison_file import is_comparison
+
+    if is_comparison(run):
+        _comparison(run, rrd, force=force)
+        return
+    from twin.archive import read_run
+    from twin.cli.console import results
+    from twin.cli.outputs import opened
+    from twin.cli.show.progress import progress
+    from twin.record import RunHeader, Step
+
+    records = read_run(run)
+    header = next(records)
+    assert isinstance(header, RunHeader)
+    with opened(None, rrd, view=rrd is None, force=force) as write, progress(quiet=False) as line:
+        write(header)
+        line.start(header.planned_time_s)
+        for record in records:
+            write(record)
+            if isinstance(record, Step):
+                line.at(record.t_s, record.nc_line)
+    if rrd is not None:
+        results().print(f"Recording  {rrd}", markup=False, soft_wrap=True)
+
+
+def _comparison(path: Path, rrd: Path | None, *, force: bool) -> None:
+    """Measured and simulated forces of a comparison."""
+    from twin.archive.comparison_file import read_comparison
+    from twin.cli.console import results
+    from twin.errors import ArchiveError
+    from twin.sinks.rerun.compare import show_comparison
+
+    if rrd is not None and rrd.exists() and not force:
+        raise ArchiveError(f"{rrd}: is there already; replace it with --force")
+    forces, _ = read_comparison(path)
+    show_comparison(forces, rrd=rrd, spawn=rrd is None)
+    if rrd is not None:
+        results().print(f"Recording  {rrd}", markup=False, soft_wrap=True)

@@ -1,0 +1,116 @@
+"""Picture of what tools cannot reach: seen from above, and a cut through the thickest place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path as Outline
+
+from twin.cam.slices.sections import cut_sections
+from twin.geometry.polygons.shapes import Shape, cut_along, outline_rings, united
+from twin.workpiece.store import PLANE_AXES
+
+if TYPE_CHECKING:
+    from twin.arrays import FloatArray
+    from twin.cam.reach.leftover import Leftover
+    from twin.cam.reach.reach import Reach
+    from twin.cam.slices.sections import SlicedPart
+    from twin.geometry.polygons.region import Region
+
+_AXES = "XYZ"
+_COLORS = ("#e24228", "#e0901c", "#2f74d0", "#2f9e55", "#9b4fc0")
+#: Contour lines of the part in the view from above.
+_LINES = 12
+
+
+def write_plot(path: Path, sliced: SlicedPart, reaches: dict[str, Reach]) -> None:
+    """Draw and write a PNG file, whole or not at all."""
+    figure = Figure(figsize=(12.0, 5.6), layout="constrained", dpi=110)
+    left, right = figure.subplots(1, 2)
+    _draw_above(left, sliced, reaches)
+    _draw_cut(right, sliced, reaches)
+    partial = path.with_name(f"{path.name}.partial")
+    try:
+        figure.savefig(partial, format="png")
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _draw_above(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None:
+    planes = sliced.slices.regions[2]
+    for k in np.unique(np.linspace(0, len(planes) - 1, _LINES).astype(int)):
+        lines = [np.concatenate((ring, ring[:1])) for ring in planes[k].rings]
+        axes.add_collection(LineCollection(lines, colors="0.65", linewidths=0.6))
+    for number, (text, reach) in enumerate(reaches.items()):
+        color = _COLORS[number % len(_COLORS)]
+        label = f"{text}: {reach.volume_mm3:.4g} mm³, {reach.thickness_mm:.3f} mm"
+        axes.plot([], [], color=color, linewidth=5.0, label=label if reach.leftovers else f"{text}: nothing stays")
+        for region in reach.leftovers:
+            if region.axis == 2:
+                _fill(axes, united(region.pieces), color)
+    low, high = sliced.slices.low_mm, sliced.slices.high_mm
+    _frame(axes, low[:2], high[:2], "X, mm", "Y, mm")
+    axes.set_title("What tools cannot reach, from above")
+    if reaches:
+        axes.legend(loc="lower center", fontsize=8, framealpha=0.9)
+
+
+def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None:
+    regions = [r for reach in reaches.values() for r in reach.leftovers]
+    if not regions:
+        axes.set_axis_off()
+        axes.text(0.5, 0.5, "Nothing stays.", ha="center", va="center", transform=axes.transAxes)
+        return
+    deepest = max(regions, key=lambda r: r.thickness_mm)
+    aside = np.abs(deepest.deepest_mm - deepest.centroid_mm)[:2]
+    axis = int(np.argmin(aside))
+    u, v = PLANE_AXES[axis]
+    plane = float(deepest.deepest_mm[axis])
+    _fill_region(axes, cut_sections(sliced.mesh, axis, np.array([plane])).regions[0])
+    for number, reach in enumerate(reaches.values()):
+        color = _COLORS[number % len(_COLORS)]
+        boxes = [b for region in reach.leftovers for b in _cut_boxes(region, axis, plane)]
+        axes.add_collection(PolyCollection(boxes, facecolors=color, edgecolors="none", alpha=0.85))
+    reach_mm = max(8.0 * deepest.thickness_mm, 0.75 * float(np.ptp([deepest.low_mm[2], deepest.high_mm[2]])))
+    middle = deepest.deepest_mm[[u, v]]
+    _frame(axes, middle - reach_mm, middle + reach_mm, f"{_AXES[u]}, mm", "Z, mm")
+    axes.set_title(f"Cut at {_AXES[axis]} {plane:.2f}, through the thickest place ({deepest.thickness_mm:.3f} mm)")
+
+
+def _cut_boxes(region: Leftover, axis: int, plane: float) -> list[FloatArray]:
+    """Where a plane across x or y cuts a region's slices, as rectangles."""
+    if region.axis != 2:
+        return []
+    boxes = []
+    for piece, (z0, z1) in zip(region.pieces, region.slabs_mm, strict=True):
+        boxes += [np.array([(a, z0), (b, z0), (b, z1), (a, z1)]) for a, b in cut_along(piece, axis, plane)]
+    return boxes
+
+
+def _fill(axes: Axes, shape: Shape, color: str) -> None:
+    rings = [Outline(ring, closed=True) for ring in outline_rings(shape)]
+    if rings:
+        patch = PathPatch(Outline.make_compound_path(*rings), facecolor=color, edgecolor="none", alpha=0.85)
+        axes.add_patch(patch)
+
+
+def _fill_region(axes: Axes, region: Region) -> None:
+    rings = [Outline(np.concatenate((r, r[:1])), closed=True) for r in region.rings]
+    if rings:
+        axes.add_patch(PathPatch(Outline.make_compound_path(*rings), facecolor="0.8", edgecolor="0.35", linewidth=0.8))
+
+
+def _frame(axes: Axes, low: FloatArray, high: FloatArray, across: str, up: str) -> None:
+    axes.set_aspect("equal")
+    margin = 0.03 * float(np.max(high - low))
+    axes.set_xlim(low[0] - margin, high[0] + margin)
+    axes.set_ylim(low[1] - margin, high[1] + margin)
+    axes.set_xlabel(across)
+    axes.set_ylabel(up)

@@ -1,0 +1,123 @@
+"""What ``twin machinable`` tells, for people and as JSON."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from twin.arrays import FloatArray
+    from twin.cam.reach.leftover import Leftover
+    from twin.cam.reach.reach import Reach
+    from twin.cam.slices.sections import SlicedPart
+
+#: Regions told of each tool; the object of --json has all.
+_MOST_REGIONS = 12
+
+
+def print_report(
+    part: Path, sliced: SlicedPart, reaches: dict[str, Reach], *, searched: bool, ball_mm: float | None
+) -> None:
+    """Tables on standard output."""
+    from rich.text import Text
+
+    from twin.cli.console import results
+    from twin.cli.show.words import plural
+
+    console = results()
+    low, high = sliced.slices.low_mm, sliced.slices.high_mm
+    size = " x ".join(f"{s:.5g}" for s in high - low)
+    pitch = float(sliced.slices.pitch_mm.max())
+    console.print(
+        Text(f"{part}: {size} mm, {len(sliced.mesh.triangles)} triangles, slices {pitch:.4g} mm apart"), soft_wrap=True
+    )
+    if reaches:
+        console.print()
+        console.print(_tools_table(reaches))
+    for text, reach in reaches.items():
+        if reach.leftovers:
+            console.print()
+            console.print(Text(f"{text}: {plural(len(reach.leftovers), 'region')}", style="bold"))
+            console.print(_regions_table(reach.leftovers[:_MOST_REGIONS]))
+    if searched:
+        console.print()
+        console.print(Text(_ball_text(ball_mm)))
+
+
+def _ball_text(ball_mm: float | None) -> str:
+    if ball_mm is None:
+        return "No ball that slices this far apart can tell finishes the part: there are sharp inner edges."
+    return f"Largest ball that finishes the part: diameter {2.0 * ball_mm:.3g} mm."
+
+
+def _tools_table(reaches: dict[str, Reach]) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for head in ("tool", "from", "stays, mm³", "thickest, mm", "regions", "counted from, mm"):
+        table.add_column(head, justify="left" if head in ("tool", "from") else "right", no_wrap=True)
+    for text, reach in reaches.items():
+        side = "any side" if reach.element.centred else "above"
+        if not reach.leftovers:
+            table.add_row(text, side, "nothing", "", "", f"{reach.thin_mm:.3f}")
+            continue
+        numbers = (f"{reach.volume_mm3:.4g}", f"{reach.thickness_mm:.3f}", str(len(reach.leftovers)))
+        table.add_row(text, side, *numbers, f"{reach.thin_mm:.3f}")
+    return table
+
+
+def _regions_table(regions: tuple[Leftover, ...]) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for head in ("stays, mm³", "thickest, mm", "at x, y, z", "X", "Y", "Z"):
+        table.add_column(head, justify="right", no_wrap=True)
+    for region in regions:
+        spans = (f"{a:.2f} to {b:.2f}" for a, b in zip(region.low_mm, region.high_mm, strict=True))
+        place = ", ".join(f"{c:.2f}" for c in region.deepest_mm)
+        table.add_row(f"{region.volume_mm3:.4g}", f"{region.thickness_mm:.3f}", place, *spans)
+    return table
+
+
+def json_text(
+    part: Path, sliced: SlicedPart, reaches: dict[str, Reach], *, searched: bool, ball_mm: float | None
+) -> str:
+    """One JSON object."""
+    made: dict[str, Any] = {
+        "part": str(part),
+        "pitch_mm": sliced.slices.pitch_mm.tolist(),
+        "tools": [_tool(text, reach) for text, reach in reaches.items()],
+    }
+    if searched:
+        made["largest_ball_diameter_mm"] = None if ball_mm is None else 2.0 * ball_mm
+    return json.dumps(made, indent=2, ensure_ascii=False)
+
+
+def _tool(text: str, reach: Reach) -> dict[str, Any]:
+    return {
+        "tool": text,
+        "from_above": not reach.element.centred,
+        "volume_mm3": reach.volume_mm3,
+        "thickness_mm": reach.thickness_mm,
+        "thin_mm": reach.thin_mm,
+        "regions": [
+            {
+                "volume_mm3": r.volume_mm3,
+                "thickness_mm": r.thickness_mm,
+                "deepest_mm": _list(r.deepest_mm),
+                "low_mm": _list(r.low_mm),
+                "high_mm": _list(r.high_mm),
+                "centroid_mm": _list(r.centroid_mm),
+            }
+            for r in reach.leftovers
+        ],
+    }
+
+
+def _list(values: FloatArray) -> list[float]:
+    return [float(v) for v in values]

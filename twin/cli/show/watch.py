@@ -1,0 +1,134 @@
+"""What a summary says beyond the run's sums: collisions, words without effect, where the tools went."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from twin.cli.show.words import plural
+from twin.record import Collision, CollisionKind, NcEvent, Record, RunHeader, RunSummary, Step
+
+#: More collisions than this are counted and not kept.
+MOST_COLLISIONS = 1000
+_MOST_NOTICES = 5
+
+
+@dataclass(slots=True, kw_only=True)
+class CollisionGroup:
+    """Collisions of one kind of one tool on one NC line, or what one motion made of many.
+
+    Attributes:
+        point_mm, t_s: tool tip and time of the first.
+    """
+
+    nc_line: int
+    tool: int
+    kind: CollisionKind
+    t_s: float
+    point_mm: tuple[float, float, float]
+    count: int = 0
+    volume_mm3: float = 0.0
+
+
+@dataclass(slots=True)
+class _Extent:
+    """Smallest box around points."""
+
+    low: list[float] = field(default_factory=lambda: [float("inf")] * 3)
+    high: list[float] = field(default_factory=lambda: [float("-inf")] * 3)
+
+    def add(self, point: tuple[float, float, float]) -> None:
+        for i, x in enumerate(point):
+            self.low[i] = min(self.low[i], x)
+            self.high[i] = max(self.high[i], x)
+
+    def __str__(self) -> str:
+        return " ".join(f"{axis} {a:g}..{b:g}" for axis, a, b in zip("XYZ", self.low, self.high, strict=True))
+
+
+class Watch:
+    """Takes the records of a run as they pass; its memory does not grow with the run.
+
+    Attributes:
+        header: the run's header, None before it came.
+        collisions: the first `MOST_COLLISIONS` of them.
+        groups: all of them, grouped, in the order of their first.
+        t_s: machine time so far.
+    """
+
+    def __init__(self) -> None:
+        self.header: RunHeader | None = None
+        self.collisions: list[Collision] = []
+        self.t_s = 0.0
+        self._groups: dict[tuple[int, int, CollisionKind], CollisionGroup] = {}
+        self._notices: dict[str, tuple[int, int]] = {}
+        self._feeds = _Extent()
+        self._fed = False
+
+    @property
+    def groups(self) -> list[CollisionGroup]:
+        """See the class."""
+        return list(self._groups.values())
+
+    def take(self, record: Record) -> None:
+        """Take one record."""
+        if isinstance(record, Step):
+            self._step(record)
+        elif isinstance(record, NcEvent):
+            if record.kind == "notice":
+                count, line = self._notices.get(record.text, (0, record.nc_line))
+                self._notices[record.text] = (count + 1, line)
+        elif isinstance(record, Collision):
+            self._collision(record)
+        elif isinstance(record, RunHeader):
+            self.header = record
+
+    def warnings(self, summary: RunSummary) -> list[str]:
+        """What the user should know, one line each."""
+        return [*self._collided(summary), *self._missed(summary), *self._without_effect()]
+
+    def _step(self, step: Step) -> None:
+        self.t_s = step.t_s + step.duration_s
+        if not step.rapid and step.start_mm != step.end_mm:
+            self._fed = True
+            self._feeds.add(step.start_mm)
+            self._feeds.add(step.end_mm)
+
+    def _collision(self, collision: Collision) -> None:
+        if len(self.collisions) < MOST_COLLISIONS:
+            self.collisions.append(collision)
+        key = (collision.nc_line, collision.tool, collision.kind)
+        group = self._groups.get(key)
+        if group is None:
+            group = self._groups[key] = CollisionGroup(
+                nc_line=collision.nc_line,
+                tool=collision.tool,
+                kind=collision.kind,
+                t_s=collision.t_s,
+                point_mm=collision.point_mm,
+            )
+        group.count += 1
+        group.volume_mm3 += collision.volume_mm3
+
+    def _collided(self, summary: RunSummary) -> Iterator[str]:
+        if summary.collisions and self.collisions:
+            yield f"{plural(summary.collisions, 'collision')}, the first: {self.collisions[0].message}"
+
+    def _missed(self, summary: RunSummary) -> Iterator[str]:
+        """The commonest slip of a set-up: stock and path in different places."""
+        if summary.complete and summary.removed_volume_mm3 <= 0.0 and self.header is not None:
+            stock = _Extent()
+            for corner in self.header.stock_bounds_mm.tolist():
+                stock.add(tuple(corner))
+            path = f"the feed motions pass {self._feeds}" if self._fed else "there is no feed motion"
+            yield (
+                f"nothing was cut: {path}, the stock is at {stock}; "
+                "check stock, machine.offsets and the tools' length_mm in the job"
+            )
+
+    def _without_effect(self) -> Iterator[str]:
+        for text, (count, line) in list(self._notices.items())[:_MOST_NOTICES]:
+            yield f"line {line}: {text}" + (f" (and {count - 1} more like it)" if count > 1 else "")
+        if len(self._notices) > _MOST_NOTICES:
+            more = plural(len(self._notices) - _MOST_NOTICES, "more kind")
+            yield f"{more} of words without effect, see the archive"

@@ -1,0 +1,149 @@
+"""What may be wrong with a log or a run, said before the numbers are believed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from twin.comparison.align import FAR_RIVALS, Delay, better_axes, find_delay
+from twin.comparison.run_forces import RunForces
+from twin.comparison.settings import CompareSettings
+from twin.errors import CompareError
+from twin.measured.log import AXES, ForceLog, Gap
+from twin.measured.spindle import SpindleSpeed
+
+#: Forces that differ by this factor or its inverse are in another unit.
+_UNIT_FACTORS = (150.0, 7000.0)
+#: For each unit the one a thousand times larger, and the one a thousand times smaller.
+_OTHER_UNITS = {"N": ("kN", "mN"), "kN": ("MN", "N"), "mN": ("N", "uN")}
+_LEVEL_SAMPLES = 50_000
+_SPEED_WITHIN = 0.01
+_POOR_FIT = 0.75
+_FAR_BETTER = 0.15
+
+
+def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Iterator[str]:
+    """Forces a thousand times too large or too small.
+
+    Raises:
+        CompareError: they are, and the unit was not given.
+    """
+    even = run.at(np.linspace(*run.span_s, _LEVEL_SAMPLES))
+    measured, simulated = _level(log.force_n), _level(even)
+    if not measured > 0.0:
+        raise CompareError(f"{log.source}: all forces are equal: nothing was measured")
+    larger, smaller = _OTHER_UNITS.get(log.unit, ("kN", "mN"))
+    for ratio, how, unit in ((simulated / measured, "smaller", larger), (measured / simulated, "larger", smaller)):
+        if _UNIT_FACTORS[0] < ratio < _UNIT_FACTORS[1]:
+            text = (
+                f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, "
+                f"expected about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any makes it a warning"
+            )
+            if settings.read.unit is None:
+                raise CompareError(text)
+            yield text
+
+
+def _level(force_n: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> float:
+    """High level of the resultant less its middle, single spikes left out; a cut may be a small part of a record."""
+    moving = force_n - np.median(force_n, axis=0)
+    return float(np.percentile(np.sqrt(np.sum(moving**2, axis=1)), 99.8))
+
+
+def check_rate(log: ForceLog, rpm: float, teeth: int) -> Iterator[str]:
+    """Samples enough for each tooth."""
+    passing = abs(rpm) * teeth / 60.0
+    if log.rate_hz < 2.0 * passing:
+        yield (
+            f"{log.source}: sampled at {log.rate_hz:g} Hz, below twice the tooth-passing frequency ({passing:g} Hz): "
+            f"expected at least {2.0 * passing:g} Hz; waveforms, delay and harmonics mean nothing, means do"
+        )
+    elif log.rate_hz < 10.0 * passing:
+        yield (
+            f"{log.source}: {log.rate_hz / passing:.1f} samples a tooth period ({passing:g} Hz): peaks are cut off; "
+            f"expected {10.0 * passing:g} Hz or more"
+        )
+
+
+def check_speed(log: ForceLog, found: SpindleSpeed | None, rpm: float) -> Iterator[str]:
+    """The spindle ran as programmed."""
+    if found is not None and abs(found.rpm / abs(rpm) - 1.0) > _SPEED_WITHIN:
+        yield (
+            f"{log.source}: spindle at {found.rpm:.0f} rpm by its {found.way}, expected the run's {abs(rpm):g} rpm: "
+            "wrong run, or the override not at 100 %? Waveforms run apart; --phase lets each window have its own shift"
+        )
+
+
+def check_overlap(run: RunForces, log: ForceLog, lag_s: float) -> Gap:
+    """The stretch that both cover, on the run's clock.
+
+    Raises:
+        CompareError: there is none.
+    """
+    begin, end = run.span_s
+    first, last = log.span_s
+    both = (max(begin, first - lag_s), min(end, last - lag_s))
+    if not both[0] < both[1]:
+        raise CompareError(
+            f"{log.source}: no overlap in time: the log covers {first:.4f} to {last:.4f} s, with a lag of {lag_s:.4f} "
+            f"s {first - lag_s:.4f} to {last - lag_s:.4f} s of the run, which covers {begin:.4f} to {end:.4f} s; "
+            "give the lag by --lag SECONDS, or --lag auto"
+        )
+    return both
+
+
+def check_fit(run: RunForces, log: ForceLog, score: float, likeness: float, settings: CompareSettings) -> Iterator[str]:
+    """A poor likeness: are the axes right?
+
+    Args:
+        score: correlation, each axis less its mean.
+        likeness: the same with the means left in.
+    """
+    if min(score, likeness) >= _POOR_FIT:
+        return
+    axes, better = better_axes(run, log)
+    if better > max(likeness, 0.0) + _FAR_BETTER and any(axes[a] != a for a in axes):
+        turned = ", ".join(f"{a} = {axes[a]}" for a in AXES)
+        yield (
+            f"{log.source}: likeness {likeness:.2f}, means included; {better:.2f} with {turned} of the log as it is "
+            f"mapped now: try {_hint(axes, log, settings)}"
+        )
+    elif settings.lag != "auto" and better > max(likeness, 0.0) + _FAR_BETTER:
+        found = find_delay(run, log)
+        yield (
+            f"{log.source}: correlation {score:.2f} with the lag given, {found.score:.2f} with {found.lag_s:.6f} s: "
+            "try --lag auto"
+        )
+    elif score < _POOR_FIT:
+        yield f"{log.source}: correlation {score:.2f}: the log does not look much like the run"
+
+
+def _hint(axes: dict[str, str], log: ForceLog, settings: CompareSettings) -> str:
+    """The option that turns the axes as they fit."""
+    if all(axes[a] == f"-{a}" for a in AXES):
+        other = "workpiece" if settings.read.force_on == "tool" else "tool"
+        return f"--force-on {other}"
+    channels = dict(zip(AXES, log.channels, strict=True))
+    parts = []
+    for axis in AXES:
+        source = axes[axis].lstrip("-")
+        parts.append(f"{axis}={_turned(channels[source]) if axes[axis].startswith('-') else channels[source]}")
+    return f'--map "{",".join(parts)}"'
+
+
+def _turned(text: str) -> str:
+    """A sum of channels with all signs turned."""
+    swapped = text.translate(str.maketrans("+-", "-+"))
+    return swapped.removeprefix("+") if text.startswith("-") else f"-{swapped}"
+
+
+def check_delay(delay: Delay, log: ForceLog) -> Iterator[str]:
+    """A delay that could as well be another one far from it: neighbours a tooth period away are no matter."""
+    far = max((abs(r - delay.lag_s) for r in delay.rivals_s), default=0.0)
+    if far > FAR_RIVALS * log.duration_s:
+        yield (
+            f"{log.source}: {len(delay.rivals_s)} other delays fit as well, up to {far:.3f} s away: the cut is steady "
+            "there, so that only the spindle's phase is known; that nearest to 0 is taken which covers the windows; "
+            "--lag-within SECONDS narrows the search"
+        )

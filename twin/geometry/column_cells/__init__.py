@@ -1,0 +1,1 @@
+"""Polygons on parallel planes as column cells: cut, filled, asked."""

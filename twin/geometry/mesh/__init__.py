@@ -1,0 +1,1 @@
+"""Triangle meshes: sections by planes, nearest points."""

@@ -1,0 +1,1 @@
+"""Polygons and lines on planes, by pyclipper and GEOS."""

@@ -1,0 +1,1 @@
+"""The test cuts: their file, their logs, their steady part."""

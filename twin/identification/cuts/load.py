@@ -1,0 +1,131 @@
+"""Files of test cuts in: read, check everything, and say every mistake at once."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from twin.errors import CutsError
+from twin.identification.cuts.cuts_file import Cuts, CutsFile
+from twin.identification.cuts.rules import RULES
+from twin.job.facts import Facts
+from twin.job.load import read_toml
+from twin.job.problems import Location, Problem, problems_of, wrong
+
+#: Keys whose default says "as the cuts need it".
+_NO_DEFAULT = (("tool", "flute_length_mm"),)
+
+
+def load_cuts(path: str | PathLike[str], *, holdout: Sequence[str] = ()) -> Cuts:
+    """Read a file of test cuts.
+
+    Args:
+        holdout: names of cuts that are not fitted, besides those that the file names.
+
+    Raises:
+        CutsError: the file cannot be read, is no TOML, or has mistakes: all of them are in the message.
+    """
+    path = Path(path)
+    data, _ = read_toml(path, "a file of test cuts", CutsError)
+    return cuts_from_dict(data, path, holdout=holdout)
+
+
+def cuts_from_dict(data: Mapping[str, Any], path: str | PathLike[str], *, holdout: Sequence[str] = ()) -> Cuts:
+    """Make test cuts from tables as `tomllib` gives them.
+
+    Args:
+        path: the file they would stand in; its folder is what files in it are relative to.
+
+    Raises:
+        CutsError: see `load_cuts`.
+    """
+    path = Path(path)
+    problems: list[Problem] = []
+    try:
+        CutsFile.model_validate(data)
+    except ValidationError as error:
+        problems += problems_of(error.errors(include_url=False), CutsFile)
+    facts = Facts(data, [p.location for p in problems], _default)
+    problems += [problem for rule in RULES for problem in rule(facts, path.parent)]
+    problems += _names(facts, holdout)
+    if problems:
+        raise CutsError(str(path), [str(_with_name(p, facts)) for p in problems])
+    joined = _joined(data, path.parent)
+    names = _named(facts)
+    joined["cuts"] = [{**cut, "name": name} for cut, name in zip(joined["cuts"], names, strict=True)]
+    joined["fit"] = {**data.get("fit", {}), "holdout": [*data.get("fit", {}).get("holdout", []), *holdout]}
+    return Cuts.model_validate({**joined, "path": path})
+
+
+def _named(facts: Facts) -> list[str]:
+    """Names of the cuts, made up where they have none."""
+    names = []
+    for index in range(facts.count("cuts")):
+        source = facts.get("cuts", index, "log") or facts.get("cuts", index, "job")
+        made_up = Path(source).stem if source else f"cut{index + 1}"
+        names.append(facts.get("cuts", index, "name") or made_up)
+    return names
+
+
+def _names(facts: Facts, holdout: Sequence[str]) -> Iterator[Problem]:
+    """No two cuts have one name, and cuts that are held out exist and are not all."""
+    names = _named(facts)
+    for name, count in Counter(names).items():
+        if count > 1:
+            index = len(names) - 1 - names[::-1].index(name)
+            yield wrong(("cuts", index, "name"), name, f"a name of its own, cuts[{names.index(name)}] has it already")
+    listed = facts.get("fit", "holdout") or ()
+    for name in (*listed, *holdout):
+        if name not in names:
+            at: Location = ("fit", "holdout") if name in listed else ("--holdout",)
+            yield wrong(at, name, f"the name of a cut: {', '.join(names)}")
+    out = {*listed, *holdout, *(n for i, n in enumerate(names) if facts.get("cuts", i, "holdout"))}
+    if names and out >= set(names):
+        yield Problem(("cuts",), ": all are held out; expected at least one that is fitted")
+
+
+def _with_name(problem: Problem, facts: Facts) -> Problem:
+    """Say the cut's name where a mistake is in a cut."""
+    match problem.location:
+        case ("cuts", int(index), *rest) if rest != ["name"]:
+            name = facts.get("cuts", index, "name")
+            return Problem(problem.location, f" (cut {name}){problem.text}") if name else problem
+    return problem
+
+
+def _default(location: Location) -> Any:
+    """Value of a key that is not given; None where it has no default."""
+    if location in _NO_DEFAULT:
+        return None
+    table: Any = CutsFile
+    for key in location[:-1]:
+        if isinstance(key, int):
+            continue
+        annotation = table.model_fields[key].annotation if key in table.model_fields else None
+        inner = next((a for a in (annotation, *getattr(annotation, "__args__", ())) if _is_table(a)), None)
+        if inner is None:
+            return None
+        table = inner
+    field = table.model_fields.get(str(location[-1]))
+    return None if field is None or field.is_required() or field.default_factory else field.default
+
+
+def _is_table(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
+
+
+def _joined(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """The data with defaults in the cuts and files joined to the folder."""
+    cuts = []
+    for cut in data["cuts"]:
+        made = {**data.get("defaults", {}), **cut}
+        for key in ("log", "job"):
+            if key in made:
+                made[key] = folder / made[key]
+        cuts.append(made)
+    return {**data, "cuts": cuts}

@@ -1,0 +1,1 @@
+"""What a test cut's forces are for unit coefficients."""

@@ -1,0 +1,91 @@
+"""HDF5 files: data sets as columns, their attributes as units and sampling rate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from twin.errors import MeasuredError
+from twin.measured.formats.arrays_in import Named, columns_table
+from twin.measured.formats.table import Table
+
+_UNIT_KEYS = ("unit", "units", "unit_string", "engineeringunit", "si_unit", "y_unit")
+_MATLAB_OWN = "#"
+
+
+def read_hdf5(path: Path, group: str | None = None, format_name: str = "HDF5") -> Table:
+    """Data sets of numbers anywhere in the file; compound ones and matrices are split into columns.
+
+    Raises:
+        MeasuredError: no HDF5 file, or nothing in it that is a log.
+    """
+    import h5py
+
+    arrays: list[Named] = []
+    scalars: dict[str, float] = {}
+
+    def visit(name: str, node: Any) -> None:
+        if name.startswith(_MATLAB_OWN):
+            return
+        for key, value in node.attrs.items():
+            _scalar(f"{name}/{key}", value, scalars)
+        if isinstance(node, h5py.Dataset):
+            _dataset(name, node, arrays, scalars)
+
+    try:
+        with h5py.File(path, "r") as file:
+            for key, value in file.attrs.items():
+                _scalar(key, value, scalars)
+            file.visititems(visit)
+    except Exception as error:  # h5py raises many kinds on damaged files
+        raise MeasuredError(f"{path}: no HDF5 file that can be read: {error}") from error
+    return columns_table(path, format_name, arrays, scalars, group)
+
+
+def _dataset(name: str, node: Any, arrays: list[Named], scalars: dict[str, float]) -> None:
+    """A data set's columns, each with its unit."""
+    if node.dtype.names:
+        units = _field_units(node.attrs, node.dtype.names)
+        fields = [f for f in node.dtype.names if node.dtype[f].kind in "fiub"]
+        arrays += [Named(f"{name}/{f}", units.get(f, ""), np.asarray(node[f], np.float64)) for f in fields]
+        return
+    if node.dtype.kind not in "fiub" or "MATLAB_empty" in node.attrs or _class(node.attrs) == "char":
+        return
+    if node.size == 1:
+        _scalar(name, node[()], scalars)
+    elif node.size:
+        arrays.append(Named(name, _unit(node.attrs), np.asarray(node[()], np.float64)))
+
+
+def _scalar(name: str, value: Any, scalars: dict[str, float]) -> None:
+    values = np.asarray(value)
+    if values.dtype.kind in "fiu" and values.size == 1:
+        scalars[name] = float(values.reshape(()))
+
+
+def _unit(attributes: Mapping[str, Any]) -> str:
+    for key in attributes:
+        if key.lower() in _UNIT_KEYS:
+            return _text(attributes[key])
+    return ""
+
+
+def _field_units(attributes: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, str]:
+    """Units of the fields of a compound data set: ``Fx_unit``, or a list under ``units``."""
+    found = {n: _text(attributes[f"{n}_unit"]) for n in names if f"{n}_unit" in attributes}
+    for key in attributes:
+        if key.lower() in _UNIT_KEYS and np.size(attributes[key]) == len(names):
+            found |= {n: _text(u) for n, u in zip(names, np.ravel(attributes[key]), strict=True)}
+    return found
+
+
+def _class(attributes: Mapping[str, Any]) -> str:
+    return _text(attributes["MATLAB_class"]) if "MATLAB_class" in attributes else ""
+
+
+def _text(value: Any) -> str:
+    value = value.reshape(-1)[0] if isinstance(value, np.ndarray) and value.size else value
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value)

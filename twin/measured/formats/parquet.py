@@ -1,0 +1,61 @@
+"""Parquet files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from twin.errors import MeasuredError
+from twin.measured.formats.table import Table, table
+
+
+def read_parquet(path: Path) -> Table:
+    """Columns of numbers and of time; a column's unit may stand in its metadata as ``unit``.
+
+    Raises:
+        MeasuredError: no Parquet file, or no columns of numbers.
+    """
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    try:
+        read = parquet.read_table(path)
+        read.validate(full=True)
+    except (OSError, pa.ArrowException) as error:
+        raise MeasuredError(f"{path}: no Parquet file that can be read: {error}") from error
+    columns = []
+    for field in read.schema:
+        values, unit = _numbers(read.column(field.name), field.type)
+        if values is not None:
+            columns.append((field.name, unit or _unit(field.metadata), values))
+    rate = (read.schema.metadata or {}).get(b"rate_hz")
+    return table(path, "Parquet", columns, rate_hz=_number(rate), row_word="row")
+
+
+def _numbers(column: Any, kind: Any) -> tuple[Any, str]:
+    """Values as floats, and the unit where the type says it; None for text."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    if pa.types.is_timestamp(kind) or pa.types.is_duration(kind):
+        whole = column.cast(pa.int64())
+        scale = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[kind.unit]
+        first = pc.min(whole).as_py() if pa.types.is_timestamp(kind) else 0
+        return (whole.to_numpy() - (first or 0)) * scale, "s"
+    if pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_decimal(kind):
+        return column.cast(pa.float64()).to_numpy().astype(np.float64), ""
+    return None, ""
+
+
+def _unit(metadata: Any) -> str:
+    found = (metadata or {}).get(b"unit") or (metadata or {}).get(b"units") or b""
+    return str(found.decode(errors="replace"))
+
+
+def _number(text: bytes | None) -> float | None:
+    try:
+        return float(text) if text is not None else None
+    except ValueError:
+        return None

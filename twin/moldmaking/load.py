@@ -1,0 +1,131 @@
+"""Mold jobs in: read, check everything that the file alone can tell, and say every mistake at once."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from twin.errors import JobError, ToolError
+from twin.job.problems import Problem, missing, problems_of, wrong
+from twin.moldmaking.model import MoldFile, MoldJob
+from twin.tools.shape import ToolShape, tool_shape
+
+_STAGES = ("rough", "semi", "finish")
+
+
+def load_mold(path: str | PathLike[str]) -> MoldJob:
+    """Read a mold job.
+
+    Raises:
+        JobError: the file cannot be read, is no TOML, or has mistakes: all of them are in the message.
+    """
+    path = Path(path)
+    try:
+        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except OSError as error:
+        why = (error.strerror or str(error)).lower()
+        raise JobError(str(path), [f"cannot be read: {why}; expected a mold job (TOML)"]) from error
+    except UnicodeDecodeError as error:
+        raise JobError(str(path), [f"byte {error.start} is not UTF-8; expected a mold job (TOML)"]) from error
+    except tomllib.TOMLDecodeError as error:
+        raise JobError(str(path), [f"no valid TOML: {error}"]) from error
+    return _job(data, path)
+
+
+def mold_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") -> MoldJob:
+    """Make a job from tables as `tomllib` gives them.
+
+    Raises:
+        JobError: see `load_mold`.
+    """
+    return _job(data, Path(folder) / "mold.toml")
+
+
+def shape_of(job: MoldFile, number: int) -> ToolShape:
+    """The cutting part of a tool."""
+    tool = next(t for t in job.tools if t.number == number)
+    return tool_shape(
+        tool.kind, tool.diameter_mm, tool.flute_length_mm, tool.corner_radius_mm or 0.0, tool.taper_deg or 0.0
+    )
+
+
+def _job(data: Mapping[str, Any], path: Path) -> MoldJob:
+    try:
+        file = MoldFile.model_validate(data)
+    except ValidationError as error:
+        found = [str(p) for p in problems_of(error.errors(include_url=False), MoldFile)]
+        raise JobError(str(path), found) from error
+    problems = [*_tool_problems(file), *_stage_problems(file), *_stock_problems(file, path.parent)]
+    if problems:
+        raise JobError(str(path), [str(p) for p in problems])
+    return _joined(file, path)
+
+
+def _joined(file: MoldFile, path: Path) -> MoldJob:
+    folder = path.parent
+    values = dict(file)
+    values["part"] = file.part.model_copy(update={"stl": folder / file.part.stl})
+    values["output"] = file.output.model_copy(update={"folder": folder / file.output.folder})
+    return MoldJob(**values, path=path)
+
+
+def _tool_problems(file: MoldFile) -> Iterator[Problem]:
+    """Numbers that differ, and shapes that can be."""
+    if not file.tools:
+        yield wrong(("tools",), [], "at least one table [[tools]]")
+    seen: set[int] = set()
+    for index, tool in enumerate(file.tools):
+        if tool.number in seen:
+            yield wrong(("tools", index, "number"), tool.number, "a number of its own")
+        seen.add(tool.number)
+        try:
+            shape_of(file, tool.number)
+        except ToolError as error:
+            yield Problem(("tools", index), f": {error}", tool.number)
+
+
+def _stage_problems(file: MoldFile) -> Iterator[Problem]:
+    """Tools that are there and get smaller, depths that suit them, allowances that shrink."""
+    known = {t.number: t for t in file.tools}
+    last: tuple[str, float] | None = None
+    for name in _STAGES:
+        stage = getattr(file, name)
+        if stage.tool not in known:
+            listed = ", ".join(map(str, known)) or "none is given"
+            yield wrong((name, "tool"), stage.tool, f"the number of a tool: {listed}")
+            continue
+        diameter = known[stage.tool].diameter_mm
+        if last is not None and diameter > last[1]:
+            expected = f"a tool no larger than that of [{last[0]}], D{last[1]:g}: it would reach nothing new"
+            yield wrong((name, "tool"), stage.tool, f"{expected}, got D{diameter:g}")
+        last = (name, diameter)
+        radial = getattr(stage, "radial_depth_mm", None)
+        if radial is not None and radial > 0.5 * diameter:
+            yield wrong(
+                (name, "radial_depth_mm"), radial, f"at most {0.5 * diameter:g}, the radius of tool {stage.tool}"
+            )
+    if file.semi.allowance_mm > file.rough.allowance_mm:
+        expected = f"at most rough.allowance_mm = {file.rough.allowance_mm:g}, what roughing leaves"
+        yield wrong(("semi", "allowance_mm"), file.semi.allowance_mm, expected)
+    if (file.finish.stepover_mm is None) == (file.finish.scallop_mm is None):
+        yield missing(("finish", "stepover_mm"), "either stepover_mm or scallop_mm, the distance of the rows")
+
+
+def _stock_problems(file: MoldFile, folder: Path) -> Iterator[Problem]:
+    """A part that is there, a block with an extent."""
+    stl = folder / file.part.stl
+    if not stl.is_file():
+        why = "is a folder" if stl.is_dir() else "does not exist"
+        yield wrong(("part", "stl"), str(file.part.stl), f"an STL file; {stl} {why}")
+    box = file.stock.box_mm
+    if box is not None:
+        for axis, low, high in zip("xyz", box.min, box.max, strict=True):
+            if not low < high:
+                yield wrong(("stock", "box_mm", "max"), high, f"above {low:g} along {axis}")
+        if file.stock.top_mm:
+            yield wrong(("stock", "top_mm"), file.stock.top_mm, "to be left out where box_mm is given")

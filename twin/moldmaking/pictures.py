@@ -1,0 +1,96 @@
+"""Pictures of a mold's stages: paths from above, and what each stage leaves on the part."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from twin.arrays import FloatArray
+from twin.cam.path.toolpath import MoveKind, ToolPath
+from twin.cam.surface.drop_cutter import DropCutter
+from twin.moldmaking.chain import MoldChain, Stage, StageResult
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLOURS = {"cut": "#3c78c8", "rapid": "#d03c30", "link": "#3a9d5a", "helix": "#e0902a", "ramp": "#e0902a"}
+_OTHER = "#8a50b0"
+_DPI = 120
+#: A move that ends no farther from a level than this belongs to it, mm.
+_AT_MM = 1e-3
+#: Chords of arcs in pictures, mm.
+_CHORD_MM = 0.02
+
+
+def _lines_by_kind(path: ToolPath) -> dict[str, list[FloatArray]]:
+    """A path as polylines, by the kind of its moves."""
+    lines: dict[str, list[FloatArray]] = {}
+    for move in path.moves:
+        lines.setdefault(str(move.kind), []).append(move.chords_mm(_CHORD_MM))
+    return lines
+
+
+def draw(chain: MoldChain, stages: Sequence[Stage], folder: Path) -> list[Path]:
+    """One picture a stage: its path, one level of it in roughing and semi-finishing, and the height of what it leaves.
+
+    Returns:
+        The files, `.png`.
+    """
+    from matplotlib.figure import Figure
+
+    folder.mkdir(parents=True, exist_ok=True)
+    needle = DropCutter(chain.surface, None)
+    files: list[Path] = []
+    for stage in stages:
+        result = chain.stage(stage)
+        level = None if stage == "finish" else _middle_level(result.path)
+        count = 2 if level is None else 3
+        figure = Figure(figsize=(6.5 * count, 5.6), layout="constrained")
+        axes = figure.subplots(1, count)
+        draw_path(axes[0], result.path)
+        if level is not None:
+            draw_path(axes[1], result.path, level - _AT_MM, level + _AT_MM)
+            axes[1].set_title(f"level at z = {level:.2f} mm")
+        _draw_rest(figure, axes[-1], result, needle)
+        minutes = result.time.total_s / 60.0
+        axes[0].set_title(f"{stage}: {result.path.name}, {minutes:.1f} min")
+        file = folder / f"{chain.job.output.name}_{stage}.png"
+        figure.savefig(file, dpi=_DPI)
+        files.append(file)
+    return files
+
+
+def _middle_level(path: ToolPath) -> float:
+    """The level at half of all cutting moves, from the top."""
+    heights = sorted(float(m.end_mm[2]) for m in path.of_kind(MoveKind.CUT))
+    return heights[len(heights) // 2]
+
+
+def draw_path(axes: Axes, path: ToolPath, low_z_mm: float = -np.inf, high_z_mm: float = np.inf) -> None:
+    """A path from above, coloured by kind; between two heights only where they are given."""
+    from matplotlib.collections import LineCollection
+
+    for kind, lines in _lines_by_kind(path).items():
+        kept = [ln[:, :2] for ln in lines if low_z_mm <= ln[-1, 2] <= high_z_mm]
+        if kept:
+            colour = COLOURS.get(kind, _OTHER)
+            axes.add_collection(LineCollection(kept, colors=colour, linewidths=0.35, label=kind))
+    axes.autoscale()
+    axes.set_aspect("equal")
+    axes.set_xlabel("x, mm")
+    axes.set_ylabel("y, mm")
+    axes.legend(loc="upper right", fontsize=7)
+
+
+def _draw_rest(figure: Any, axes: Axes, result: StageResult, needle: DropCutter) -> None:
+    stock = result.stock
+    above = stock.heights_mm - needle.drop(stock.points_mm).reshape(stock.heights_mm.shape)
+    most = max(float(np.percentile(above, 99.5)), 1e-3)
+    extent = (float(stock.low_mm[0]), float(stock.high_mm[0]), float(stock.low_mm[1]), float(stock.high_mm[1]))
+    image = axes.imshow(above.T, origin="lower", extent=extent, vmin=0.0, vmax=most, cmap="viridis")
+    figure.colorbar(image, ax=axes, label="left on the part, mm along z")
+    axes.set_title(f"after {result.stage}")
+    axes.set_xlabel("x, mm")

@@ -1,0 +1,89 @@
+"""A job file that replays the programs that were made."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from twin.arrays import FloatArray
+from twin.cam.path.to_nc import NcOptions, Operation, describe, kind_of
+from twin.errors import ToolPathError
+from twin.job.toml_text import toml_text
+
+#: Thinnest tool's diameter by which the replay's slices must be thinner.
+_PITCHES_A_TOOL = 20.0
+
+
+def replay_tables(
+    program: Path,
+    operations: Sequence[Operation],
+    options: NcOptions,
+    stock_mm: FloatArray,
+    pitch_mm: float,
+    folder: Path,
+) -> dict[str, Any]:
+    """The tables of a job file.
+
+    Args:
+        program: the NC program.
+        stock_mm: the stock's box, shape (2, 3).
+        pitch_mm: slice pitch wanted of the replay.
+        folder: where the job file is going to be.
+    """
+    tools = {o.number: o for o in operations}
+    thinnest = min(2.0 * o.path.tool.nominal_radius_mm for o in operations)
+    tables: dict[str, Any] = {
+        "program": {"file": os.path.relpath(program, folder), "dialect": options.dialect},
+        "machine": {"offsets": {options.wcs: [0.0, 0.0, 0.0]}},
+        "stock": {"box_mm": {"min": stock_mm[0].tolist(), "max": stock_mm[1].tolist()}, "wcs": options.wcs},
+        "tools": [_tool(o) for _, o in sorted(tools.items())],
+        "simulation": {"slice_pitch_mm": min(pitch_mm, thinnest / _PITCHES_A_TOOL)},
+    }
+    if options.dialect == "grbl":
+        tables["program"]["tool"] = operations[0].number
+    return tables
+
+
+def _tool(operation: Operation) -> dict[str, Any]:
+    shape = operation.path.tool
+    table: dict[str, Any] = {
+        "number": operation.number,
+        "name": describe(shape),
+        "kind": kind_of(shape),
+        "diameter_mm": 2.0 * shape.nominal_radius_mm,
+        "teeth": operation.teeth,
+        "flute_length_mm": shape.height_mm,
+        "length_mm": operation.length_mm,
+    }
+    if table["kind"] in ("bull", "taper") and shape.corner_mm:
+        table["corner_radius_mm"] = shape.corner_mm
+    if shape.taper_rad:
+        table["taper_deg"] = math.degrees(shape.taper_rad)
+    return table
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file whole or not at all.
+
+    Raises:
+        ToolPathError: it cannot be written.
+    """
+    partial = path.with_name(f"{path.name}.partial")
+    try:
+        partial.write_text(text, encoding="utf-8")
+        partial.replace(path)
+    except OSError as error:
+        partial.unlink(missing_ok=True)
+        raise ToolPathError(f"{path}: cannot be written: {error.strerror}") from error
+
+
+def write_replay_job(path: Path, tables: Mapping[str, Any], comment: str) -> None:
+    """Write a job file.
+
+    Args:
+        comment: its first line.
+    """
+    write_text(path, f"# {comment}\n\n{toml_text(tables)}")

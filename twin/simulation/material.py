@@ -1,0 +1,138 @@
+"""The workpiece under a tool: sweeps wait their turn, are subtracted, and what must not touch it is noticed."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from typing import TypeAlias
+
+import numpy as np
+
+from twin.arrays import FloatArray
+from twin.motion.sweep import Body, Sweep, SweptVolume
+from twin.record import CollisionKind
+from twin.simulation.setup import ToolSetup
+from twin.tolerance import Tolerance
+from twin.workpiece.removal import Removal
+from twin.workpiece.trislice import TriSlices
+
+#: Sweeps wait until the tool has gone on by this many slice pitches, or until this many are waiting.
+PENDING_PITCHES = 10.0
+PENDING_SWEEPS = 48
+#: Sweeps whose time has come are subtracted so many at once, so that threads have enough to do.
+TOGETHER = 8
+#: A sweep this near to a motion's line lies on it, mm.
+SAME_LINE_MM = 1e-9
+
+
+#: Kind of a collision and the volume of material in its way.
+Touch: TypeAlias = tuple[CollisionKind, float]
+
+
+class Material:
+    """Takes sweeps out of the workpiece in order.
+
+    The newest sweeps wait before they are subtracted from the slices and are left out of the material exactly
+    meanwhile: near the tool, where the surface has just been made, engagement does not depend on the slices' pitch.
+    """
+
+    def __init__(self, workpiece: TriSlices, tolerance: Tolerance, threads: int) -> None:
+        self.workpiece = workpiece
+        self._tolerance = tolerance
+        self._removal = Removal(workpiece, tolerance.chord_mm, threads)
+        self._waiting: deque[tuple[Sweep, int]] = deque()
+        self._window_mm = PENDING_PITCHES * float(np.max(workpiece.pitch_mm))
+        self.removed_mm3: dict[int, float] = {}
+        self.changed: list[tuple[FloatArray, FloatArray]] = []
+
+    def pending(self, tool: int, start_mm: FloatArray, feed: FloatArray) -> SweptVolume:
+        """What is not yet subtracted from the slices, and can have reached the front of a tool on a straight motion.
+
+        A sweep of the same tool that lies on the motion's line, behind its start, cannot: a convex tool there lies
+        behind the plane that touches any front point.
+        """
+        return SweptVolume([sweep for sweep, by in self._waiting if by != tool or not _behind(sweep, start_mm, feed)])
+
+    def near(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> bool:
+        """Whether the box of a motion of any of a tool's bodies meets the stock's box."""
+        return any(self._meets(body, start_mm, end_mm) for body in (tool.cutter, *(b for _, b in tool.rigid)))
+
+    def _meets(self, body: Body, start_mm: FloatArray, end_mm: FloatArray) -> bool:
+        low, high = Sweep(body, start_mm, end_mm).bounds_mm
+        return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
+
+    def cut(
+        self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray, forbidden: CollisionKind | None
+    ) -> Iterator[Touch]:
+        """Move the cutting part in a straight line: it removes material, now or a little later.
+
+        Args:
+            forbidden: what it is called when it meets material, None where it may.
+
+        Yields:
+            The touch, if it is forbidden and there is one.
+        """
+        if forbidden is None:
+            self._wait(Sweep(tool.cutter, start_mm, end_mm), tool.number)
+            return
+        self.flush()
+        self._waiting.append((Sweep(tool.cutter, start_mm, end_mm), tool.number))
+        volume = self._subtract(1)
+        if self.significant(volume):
+            yield forbidden, volume
+
+    def touches(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> Iterator[Touch]:
+        """Shank and holder moved in a straight line, after the cutting part has gone there; they remove nothing."""
+        for kind, body in tool.rigid:
+            if self._meets(body, start_mm, end_mm):
+                self.flush()
+                volume = self._removal.cut(Sweep(body, start_mm, end_mm), apply=False)
+                if self.significant(volume):
+                    yield kind, volume
+
+    def _wait(self, sweep: Sweep, tool: int) -> None:
+        self._waiting.append((sweep, tool))
+        newer = sum(s.length_mm for s, _ in self._waiting) - self._waiting[0][0].length_mm
+        done = 0
+        while len(self._waiting) - done > 1 and (
+            newer >= self._window_mm or len(self._waiting) - done > PENDING_SWEEPS
+        ):
+            done += 1
+            newer -= self._waiting[done][0].length_mm
+        if done >= min(TOGETHER, len(self._waiting) - 1):
+            self._subtract(done)
+
+    def flush(self) -> None:
+        """Subtract everything that waits."""
+        self._subtract(len(self._waiting))
+
+    def volume_inside(self, tool: ToolSetup, tip_mm: FloatArray) -> float:
+        """Volume of material that the cutting part stands in, not moving."""
+        self.flush()
+        return self._removal.cut(Sweep(tool.cutter, tip_mm, tip_mm), apply=False)
+
+    def significant(self, volume_mm3: float) -> bool:
+        """Whether a volume is more than a touch within tolerance."""
+        return volume_mm3 > self._tolerance.contact_mm3
+
+    def _subtract(self, count: int) -> float:
+        """Subtract the sweeps that have waited longest; returns the removed volume."""
+        taken = [self._waiting.popleft() for _ in range(count)]
+        volumes = self._removal.cut_all([sweep for sweep, _ in taken]) if taken else np.zeros(0)
+        for (sweep, tool), volume in zip(taken, volumes.tolist(), strict=True):
+            if volume > 0.0:
+                self.removed_mm3[tool] = self.removed_mm3.get(tool, 0.0) + volume
+                self.changed.append(sweep.bounds_mm)
+        return float(volumes.sum())
+
+    def close(self) -> None:
+        """Let worker threads go."""
+        self._removal.close()
+
+
+def _behind(sweep: Sweep, start_mm: FloatArray, feed: FloatArray) -> bool:
+    """Whether a straight sweep lies on the line of a motion, behind its start."""
+    behind = np.array([start_mm - sweep.start_mm, start_mm - sweep.end_mm])
+    along = behind @ feed
+    aside = np.abs(behind - along[:, None] * feed).max()
+    return bool(aside <= SAME_LINE_MM and along.min() >= -SAME_LINE_MM)

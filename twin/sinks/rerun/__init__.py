@@ -1,0 +1,1 @@
+"""The timeline in rerun: scene, blueprint, batches, recordings."""

@@ -1,0 +1,76 @@
+"""What stands in the scene at all times: axes, stock, styles of curves and path, the scale of forces."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import rerun as rr
+
+from twin.arrays import FloatArray
+from twin.record import RunHeader
+from twin.sinks.rerun import layout
+from twin.sinks.rerun.shapes import box_edges, class_colors, class_force_n, force_class, label_step_n
+
+#: Parts of the scale.
+_BARS = 28
+#: Rounding that a number at the end of the scale survives.
+_ABOVE = 1.0 + 1e-9
+_UP = np.array((0.0, 0.0, 1.0))
+
+
+def draw_scene(recording: rr.RecordingStream, header: RunHeader) -> None:
+    """Log what does not change in a run."""
+    log = recording.log
+    log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True, strict=True)
+    edges = rr.LineStrips3D(
+        box_edges(header.stock_bounds_mm), colors=layout.STOCK_COLOR, radii=rr.Radius.ui_points(0.6)
+    )
+    log(layout.STOCK, edges, static=True, strict=True)
+    for series in layout.SERIES:
+        style = rr.SeriesLines(colors=series.color, names=series.name, widths=1.2, aggregation_policy="MinMax")
+        log(series.entity, style, static=True, strict=True)
+    cut = rr.LineStrips3D.from_fields(radii=rr.Radius.ui_points(1.8), show_labels=False)
+    log(layout.CUT_PATH, cut, static=True, strict=True)
+    rapid = rr.LineStrips3D.from_fields(radii=rr.Radius.ui_points(0.5), colors=layout.RAPID_COLOR, show_labels=False)
+    log(layout.RAPID_PATH, rapid, static=True, strict=True)
+
+
+def draw_scale(recording: rr.RecordingStream, stock_bounds_mm: FloatArray, end_n: float) -> None:
+    """Log the colours of the classes of force on a scale from 0 to ``end_n``; the path so far changes with it.
+
+    Path strips carry the class of their force; a colour for each class is all that a new scale needs. Beside the stock
+    stands a bar of the same colours with its numbers.
+    """
+    colors = class_colors(end_n)
+    classes = [(number, f"{class_force_n(number):.3g} N", color) for number, color in enumerate(colors)]
+    recording.log(layout.PATH, rr.AnnotationContext(classes), static=True, strict=True)
+    foot, beside, height = _bar(stock_bounds_mm)
+    at = np.linspace(0.0, height, _BARS + 1)
+    strips = [np.stack([foot + a * _UP, foot + b * _UP]) for a, b in pairwise(at)]
+    forces = (np.arange(_BARS) + 0.5) / _BARS * end_n
+    bar_colors = [colors[max(1, force_class(float(f)))] for f in forces]
+    bar = rr.LineStrips3D(strips, colors=bar_colors, radii=rr.Radius.ui_points(4.0))
+    recording.log(layout.SCALE, bar, static=True, strict=True)
+    step_n = label_step_n(end_n)
+    values = np.arange(round(end_n / step_n) + 1) * step_n
+    values = values[values <= end_n * _ABOVE]
+    numbers = rr.Points3D(
+        beside + (values / end_n * height)[:, None] * _UP,
+        labels=[f"{v:.3g} N" for v in values],
+        colors=layout.TEXT_COLOR,
+        radii=rr.Radius.ui_points(0.0),
+        show_labels=True,
+    )
+    recording.log(f"{layout.SCALE}/numbers", numbers, static=True, strict=True)
+
+
+def _bar(stock_bounds_mm: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    """Foot of the bar, foot of its numbers, and its height: to the right of the stock as the camera sees it."""
+    low, high = stock_bounds_mm
+    reach = 0.5 * float(np.linalg.norm(high - low))
+    to_x, to_y, _ = layout.EYE
+    right = np.array((-to_y, to_x, 0.0)) / math.hypot(to_x, to_y)
+    centre = np.array((*(0.5 * (low + high))[:2], low[2]))
+    return centre + 1.5 * reach * right, centre + 1.62 * reach * right, reach

@@ -1,0 +1,245 @@
+"""A run into the rerun viewer: part, tool and path in 3D, forces below, NC blocks beside (docs/rerun.md)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import rerun as rr
+
+from twin.errors import ArchiveError, TwinError
+from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, ToolRecord, WorkpiecePatch
+from twin.sinks.rerun import layout
+from twin.sinks.rerun.batches import Moments, PathBatch, StepBatch, force_columns, path_columns, pose_columns
+from twin.sinks.rerun.blueprint import blueprint
+from twin.sinks.rerun.file import RecordingFile
+from twin.sinks.rerun.scene import draw_scale, draw_scene
+from twin.sinks.rerun.shapes import scale_end_n, tool_mesh
+from twin.sinks.rerun.summary import summary_text
+
+_PORT = 9876
+
+
+class RerunSink:
+    """Writes a ``.rrd`` file, shows the run live, or both.
+
+    Args:
+        rrd: the recording's file; missing folders above it are made. It is named ``*.partial.rrd`` until `close`.
+        spawn: start a viewer and show the run while it is computed.
+        force: replace a file that is there instead of refusing.
+
+    Raises:
+        ArchiveError: the file is there already, or cannot be made.
+        TwinError: the viewer cannot be started.
+        ValueError: neither a file nor a viewer is asked for.
+    """
+
+    def __init__(self, *, rrd: Path | None = None, spawn: bool = False, force: bool = False) -> None:
+        if rrd is None and not spawn:
+            raise ValueError("rrd or spawn must be given")
+        self._file = RecordingFile(Path(rrd), force=force) if rrd is not None else None
+        self._spawn = spawn
+        self._recording: rr.RecordingStream | None = None
+        self._closed = False
+        self._batch = StepBatch()
+        self._path = PathBatch(0.0)
+        self._tools: dict[int, ToolRecord] = {}
+        self._tool: int | None = None
+        self._scale_n = 0.0
+        self._now = (0.0, 0, 0)
+        self._tip = (0.0, 0.0, 0.0)
+        self._stock_mm = np.zeros((2, 3))
+
+    def write(self, record: Record) -> None:
+        """Take one record.
+
+        Raises:
+            ArchiveError: the disk is full or the like; or the record does not belong here.
+        """
+        if self._closed:
+            raise ArchiveError("the recording is closed")
+        if isinstance(record, RunHeader):
+            self._start(record)
+            return
+        if self._recording is None:
+            raise ArchiveError(f"a run begins with its RunHeader, got {type(record).__name__}")
+        match record:
+            case Step():
+                self._step(record)
+            case NcEvent():
+                self._event(record)
+            case Collision():
+                self._collision(record)
+            case WorkpiecePatch():
+                self._patch(record)
+            case RunSummary():
+                text = summary_text(record)
+                self._log(layout.SUMMARY, None, rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
+        if self._file is not None:
+            self._file.check()
+
+    def close(self) -> None:
+        """Send what waits and finish the file; may be called twice. A viewer that was closed meanwhile is no error.
+
+        Raises:
+            ArchiveError: the end could not be written; what was written is kept under the partial name.
+        """
+        if self._closed:
+            return
+        self._closed = True
+        if self._recording is not None:
+            self._send_batch()
+            if self._tool is not None:
+                self._log(layout.TOOL, self._now, rr.Transform3D.from_fields(translation=self._tip))
+            self._recording.disconnect()
+        if self._file is not None:
+            self._file.close()
+
+    def discard(self) -> None:
+        """End without leaving a file; a viewer keeps what it has been shown."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._recording is not None:
+            self._recording.disconnect()
+        if self._file is not None:
+            self._file.discard()
+
+    def _start(self, header: RunHeader) -> None:
+        if self._recording is not None:
+            raise ArchiveError("a run has one RunHeader, got a second one")
+        recording = rr.RecordingStream(layout.APPLICATION_ID)
+        viewers = [self._viewer(recording)] if self._spawn else []
+        if self._file is not None:
+            self._file.connect(recording, *viewers)
+        else:
+            recording.set_sinks(*viewers)
+        recording.send_blueprint(blueprint(header.stock_bounds_mm))
+        recording.set_log_tick_enabled(False)
+        recording.set_log_time_enabled(False)
+        recording.send_recording_name(header.program)
+        self._recording = recording
+        self._stock_mm = header.stock_bounds_mm
+        self._tools = {tool.number: tool for tool in header.tools}
+        self._path = PathBatch(header.planned_time_s)
+        draw_scene(recording, header)
+
+    def _viewer(self, recording: rr.RecordingStream) -> rr.GrpcSink:
+        """Start a viewer, or find the one that runs."""
+        try:
+            rr.spawn(port=_PORT, connect=False, hide_welcome_screen=True, recording=recording)
+        except RuntimeError as error:
+            first = str(error).strip().splitlines()[0]
+            raise TwinError(f"the rerun viewer cannot be started: {first}") from error
+        return rr.GrpcSink(f"rerun+http://127.0.0.1:{_PORT}/proxy")
+
+    def _step(self, step: Step) -> None:
+        if step.tool != self._tool:
+            self._tool = step.tool
+            self._change_tool(step)
+        self._path.add(step)
+        self._now = (step.t_s + step.duration_s, step.index + 1, step.nc_line)
+        self._tip = step.end_mm
+        if self._batch.add(step):
+            self._send_batch()
+
+    def _change_tool(self, step: Step) -> None:
+        """The mesh of the tool that is now in the spindle, or none."""
+        tool = self._tools.get(step.tool)
+        moment = (step.t_s, step.index, step.nc_line)
+        if tool is None:
+            self._log(layout.TOOL, moment, rr.Clear(recursive=False))
+            return
+        mesh = tool_mesh(tool.profile_mm)
+        self._log(
+            layout.TOOL,
+            moment,
+            rr.Mesh3D(
+                vertex_positions=mesh.vertices,
+                vertex_normals=mesh.normals,
+                triangle_indices=mesh.triangles,
+                albedo_factor=layout.TOOL_COLOR,
+            ),
+        )
+
+    def _event(self, event: NcEvent) -> None:
+        self._now = (event.t_s, self._now[1], event.nc_line)
+        level, color = layout.EVENT_STYLE[event.kind]
+        text = f"{event.nc_line:>6}  {event.text}"
+        self._log(layout.BLOCKS, self._now, rr.TextLog(text, level=level, color=color))
+
+    def _collision(self, collision: Collision) -> None:
+        moment = (collision.t_s, self._now[1], collision.nc_line)
+        message = collision.message.partition(f":{collision.nc_line}: ")[2] or collision.message
+        text = f"{collision.nc_line:>6}  COLLISION {message}"
+        self._log(layout.COLLISION_LOG, moment, rr.TextLog(text, level="ERROR", color=layout.COLLISION_COLOR))
+        self._log(
+            layout.COLLISIONS,
+            moment,
+            rr.Points3D(
+                [collision.point_mm],
+                colors=layout.COLLISION_COLOR,
+                radii=rr.Radius.ui_points(6.0),
+                labels=f"{collision.kind}, line {collision.nc_line}",
+            ),
+        )
+
+    def _patch(self, patch: WorkpiecePatch) -> None:
+        moment = (patch.t_s, self._now[1], self._now[2])
+        entity = f"{layout.WORKPIECE}/{patch.patch}"
+        if not len(patch.vertices_mm):
+            self._log(entity, moment, rr.Clear(recursive=False))
+            return
+        self._log(
+            entity,
+            moment,
+            rr.Mesh3D(
+                vertex_positions=patch.vertices_mm,
+                vertex_normals=patch.normals,
+                triangle_indices=patch.triangles,
+                albedo_factor=layout.PART_COLOR,
+            ),
+        )
+
+    def _send_batch(self) -> None:
+        steps = self._batch.take()
+        if not steps:
+            return
+        moments, tips = pose_columns(steps)
+        self._send(layout.TOOL, moments, rr.Transform3D.columns(translation=tips))
+        moments, curves = force_columns(steps)
+        if len(moments.t_s):
+            for entity, values in curves.items():
+                self._send(entity, moments, rr.Scalars.columns(scalars=values))
+        for entity, rows in self._path.take():
+            self._send(entity, *path_columns(rows))
+        end_n = scale_end_n(self._path.highest_n)
+        if self._recording is not None and end_n != self._scale_n:
+            self._scale_n = end_n
+            draw_scale(self._recording, self._stock_mm, end_n)
+
+    def _send(self, entity: str, moments: Moments, columns: Any) -> None:
+        """Many rows of an entity."""
+        if self._recording is not None:
+            self._recording.send_columns(entity, moments.columns(), columns, strict=True)
+
+    def _log(self, entity: str, moment: tuple[float, int, int] | None, what: rr.AsComponents) -> None:
+        """One row of an entity; None for what holds at all times."""
+        if self._recording is None:
+            return
+        if moment is not None:
+            t_s, step, nc_line = moment
+            self._recording.set_time(layout.TIME, duration=np.timedelta64(round(t_s * 1e9), "ns"))
+            self._recording.set_time(layout.STEP, sequence=step)
+            self._recording.set_time(layout.NC_LINE, sequence=nc_line)
+        self._recording.log(entity, what, static=moment is None, strict=True)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

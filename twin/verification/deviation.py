@@ -1,0 +1,244 @@
+"""How far the machined surface stands off the design: gouges, excess, how much of the surface is within tolerance.
+
+Signs: positive where material was left, negative where material of the design was removed. Distances are normal ones,
+from points of the machined surface to the design's triangles. What a distance to the nearest surface cannot see, a thin
+rib that is gone altogether, is seen by the rays: they tell how much of the design is missing along them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from twin.arrays import FloatArray, frozen
+from twin.geometry.mesh.closest import ClosestPoints
+from twin.tolerance import Tolerance
+from twin.verification.places import Place, places_of
+from twin.verification.rays import Rays, beyond, cast
+from twin.workpiece.from_mesh import Solid
+from twin.workpiece.trislice import TriSlices
+
+#: Shares of the surface's area that the report tells deviations for.
+SHARES = (0.001, 0.01, 0.05, 0.5, 0.95, 0.99, 0.999)
+#: Smallest part of a design's normal along a ray for which the ray's own length tells a normal distance.
+_FACING = 0.577
+#: A point of the design counts as lost when no machined surface is nearer than tolerance and this many pitches.
+_LOST_PITCHES = 1.0
+#: Deviation that rounding of vertices makes, mm.
+_ROUNDING_MM = 1e-5
+#: Points this near to the stock's box, mm, were never touched when they are flush with the design as well.
+_FLUSH_MM = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Limits:
+    """What of the part is judged: a box.
+
+    Attributes:
+        low_mm, high_mm: corners, shape (3,); infinite where there is no limit.
+    """
+
+    low_mm: FloatArray
+    high_mm: FloatArray
+
+    @classmethod
+    def of(cls, design: Solid, region_mm: ArrayLike | None = None) -> Limits:
+        """The design's box in x and y, or a region (x0, y0, x1, y1); upwards from the design's lowest point."""
+        low, high = design.vertices_mm.min(axis=0), design.vertices_mm.max(axis=0)
+        if region_mm is not None:
+            region = frozen(region_mm, "region_mm", (4,))
+            low = np.array([*region[:2], low[2]])
+            high = np.array([*region[2:], high[2]])
+        return cls(low_mm=low, high_mm=np.array([high[0], high[1], math.inf]))
+
+    def hold(self, points_mm: FloatArray) -> NDArray[np.bool_]:
+        """Whether points lie inside, those on its sides included."""
+        over = (points_mm >= self.low_mm - _FLUSH_MM) & (points_mm <= self.high_mm + _FLUSH_MM)
+        return np.asarray(np.all(over, axis=1))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Deviation:
+    """What was machined against the design.
+
+    Attributes:
+        points_mm: of the machined surface, shape (n, 3).
+        deviation_mm: shape (n,).
+        area_mm2: of the surface that each stands for, shape (n,).
+        design_points_mm, design_deviation_mm: points of the design and how far the machined surface stands off there,
+            shape (m, 3) and (m,).
+        tolerance_mm: allowed gouge; excess_mm: allowed excess.
+        gouged_mm3: volume of gouges, as depth times area; a rib that is gone is not in it, but in ``lost_mm``.
+        left_mm3: volume left over the design.
+        lost_mm: how far the nearest machined surface is from the point of the design that is missing most, 0 for none.
+        resolution_mm: what distances at the points are known to.
+        pitch_mm: largest distance of the rays; what is smaller may stand between them unseen.
+        places: of gouges and excess beyond tolerance, the worst first.
+    """
+
+    points_mm: FloatArray
+    deviation_mm: FloatArray
+    area_mm2: FloatArray
+    design_points_mm: FloatArray
+    design_deviation_mm: FloatArray
+    tolerance_mm: float
+    excess_mm: float
+    gouged_mm3: float
+    left_mm3: float
+    lost_mm: float
+    resolution_mm: float
+    pitch_mm: float
+    places: tuple[Place, ...]
+
+    @property
+    def worst_gouge_mm(self) -> float:
+        """Depth of the deepest gouge, 0 or more."""
+        return max(0.0, -float(self.deviation_mm.min(initial=0.0)), self.lost_mm)
+
+    @property
+    def worst_excess_mm(self) -> float:
+        """Height of what is left most, 0 or more."""
+        return max(0.0, float(self.deviation_mm.max(initial=0.0)))
+
+    @property
+    def gouge_ok(self) -> bool:
+        """Whether no gouge is deeper than the tolerance, as far as it can be known."""
+        return self.worst_gouge_mm <= self.tolerance_mm + self.resolution_mm
+
+    @property
+    def excess_ok(self) -> bool:
+        """The same for what is left."""
+        return self.worst_excess_mm <= self.excess_mm + self.resolution_mm
+
+    @property
+    def within(self) -> float:
+        """Share of the machined area within both bounds."""
+        ok = (self.deviation_mm >= -self.tolerance_mm) & (self.deviation_mm <= self.excess_mm)
+        total = float(self.area_mm2.sum())
+        return float(self.area_mm2[ok].sum()) / total if total else 1.0
+
+    def quantiles_mm(self, shares: ArrayLike = SHARES) -> FloatArray:
+        """Deviations that shares of the machined area stay below."""
+        if len(self.deviation_mm) == 0:
+            return np.zeros(np.shape(shares))
+        order = np.argsort(self.deviation_mm, kind="stable")
+        grown = np.cumsum(self.area_mm2[order])
+        index = np.searchsorted(grown, np.asarray(shares) * grown[-1])
+        return np.asarray(self.deviation_mm[order][np.minimum(index, len(order) - 1)])
+
+
+def deviation(
+    store: TriSlices,
+    design: Solid,
+    *,
+    tolerance_mm: float,
+    excess_mm: float | None = None,
+    limits: Limits | None = None,
+    threads: int | None = None,
+) -> Deviation:
+    """Compare a machined workpiece with a design in the same coordinates.
+
+    Args:
+        tolerance_mm: depth of a gouge that is still right.
+        excess_mm: height of what may be left, e.g. allowance and scallops; the tolerance if not given.
+        limits: what is judged; the design's box if not given.
+
+    Raises:
+        ValueError: a tolerance that is not above 0.
+    """
+    excess = tolerance_mm if excess_mm is None else excess_mm
+    if not (tolerance_mm > 0.0 and excess > 0.0):
+        raise ValueError(f"tolerance_mm and excess_mm must be above 0, got {tolerance_mm} and {excess}")
+    limits = limits or Limits.of(design)
+    tree = ClosestPoints(design.vertices_mm, design.triangles, design.edges)
+    found = [_one_direction(rays, tree, store, limits, threads) for rays in cast(store, design)]
+    points, away, area, touched, wanted, over = (np.concatenate([f[i] for f in found]) for i in range(6))
+    pitch = float(store.pitch_mm.max())
+    lost = _lost(points, wanted, over, tolerance_mm + _LOST_PITCHES * pitch)
+    points, away, area = points[touched], away[touched], area[touched]
+    return Deviation(
+        points_mm=points,
+        deviation_mm=away,
+        area_mm2=area,
+        design_points_mm=wanted,
+        design_deviation_mm=over,
+        tolerance_mm=tolerance_mm,
+        excess_mm=excess,
+        gouged_mm3=float((np.maximum(-away, 0.0) * area).sum()),
+        left_mm3=sum(f.left_mm3 for f in found),
+        lost_mm=lost,
+        resolution_mm=Tolerance.for_pitch(pitch).chord_mm + _ROUNDING_MM,
+        pitch_mm=pitch,
+        places=places_of(points, away, area, tolerance_mm, excess, pitch),
+    )
+
+
+class _Direction(NamedTuple):
+    """What rays along one axis tell: points of the machined surface, of the design, and the volume left over it."""
+
+    points: FloatArray
+    away: FloatArray
+    area: FloatArray
+    touched: NDArray[np.bool_]
+    wanted: FloatArray
+    over: FloatArray
+    left_mm3: float
+
+
+def _one_direction(
+    rays: Rays, tree: ClosestPoints, store: TriSlices, limits: Limits, threads: int | None
+) -> _Direction:
+    points, _, _ = rays.points(rays.machined)
+    points = points[limits.hold(points)]
+    near = tree.ask(points, threads)
+    apart = points - near.places_mm
+    far = np.abs(near.distance_mm) > _ROUNDING_MM
+    normals = np.where(far[:, None], apart / np.where(far, near.distance_mm, 1.0)[:, None], near.normals)
+    area = np.abs(normals[:, rays.axis]) * rays.area_mm2
+    touched = ~(_flush(points, store) & (np.abs(near.distance_mm) <= 2.0 * _ROUNDING_MM))
+    wanted, over, left = _design_side(rays, tree, limits, threads)
+    return _Direction(points, near.distance_mm, area, touched, wanted, over, left)
+
+
+def _design_side(
+    rays: Rays, tree: ClosestPoints, limits: Limits, threads: int | None
+) -> tuple[FloatArray, FloatArray, float]:
+    """Points of the design that rays meet squarely, what stands over them, and the volume of that.
+
+    The volume is the sum over the three directions of lengths on rays, each weighted by the square of the design's
+    normal along its ray: these squares add up to one, so that every part of the surface counts once.
+    """
+    wanted, _, out = rays.points(rays.design)
+    over = beyond(rays) if len(wanted) else np.empty(0)
+    inside = limits.hold(wanted)
+    wanted, over, out = wanted[inside], over[inside], out[inside]
+    facing = np.abs(tree.ask(wanted, threads).normals[:, rays.axis])
+    end = np.where(out > 0.0, limits.high_mm[rays.axis], limits.low_mm[rays.axis])
+    standing = np.clip(over, 0.0, np.abs(end - wanted[:, rays.axis]))
+    left = float((standing * facing**2).sum()) * rays.area_mm2
+    seen = facing >= _FACING
+    return wanted[seen], (over * facing)[seen], left
+
+
+def _flush(points: FloatArray, store: TriSlices) -> NDArray[np.bool_]:
+    """Points on the faces of the stock's box."""
+    low = np.abs(points - store.low_mm) <= _FLUSH_MM
+    high = np.abs(points - store.high_mm) <= _FLUSH_MM
+    return np.asarray(np.any(low | high, axis=1))
+
+
+def _lost(points: FloatArray, wanted: FloatArray, over: FloatArray, least_mm: float) -> float:
+    """Distance of the worst point of the design that is gone from any machined surface."""
+    gone = wanted[over < -least_mm]
+    if len(gone) == 0:
+        return 0.0
+    if len(points) == 0:
+        return math.inf
+    distance, _ = cKDTree(points).query(gone)
+    worst = float(np.max(distance))
+    return worst if worst > least_mm else 0.0
