@@ -69,21 +69,21 @@ def slug(heading: str) -> str:
 
 
 def test_files_stay_short() -> None:
-    # numba's cache does not see changes in other files, so a kernel's helpers must stay beside it
+    # kernels may be longer: their helpers stand next to them
     too_long = {
         name(p): lines for p in PYTHON if not is_kernels(p) and (lines := len(p.read_text().splitlines())) > MOST_LINES
     }
     assert too_long == {}
 
 
-def test_only_kernels_know_numba() -> None:
-    assert [name(p) for p in SOURCES if not is_kernels(p) and "numba" in set(imported(p))] == []
+def test_numba_has_one_door() -> None:
+    assert [name(p) for p in SOURCES if any(m.split(".")[0] == "numba" for m in imported(p))] == ["twin/jit.py"]
 
 
 def test_every_kernels_module_is_under_the_rules_for_kernels(settings: dict[str, Any]) -> None:
     kernels = [module(p) for p in SOURCES if is_kernels(p)]
     rule = contract(settings, "kernels know arrays and numbers only")
-    untyped = [o["module"] for o in settings["tool"]["mypy"]["overrides"] if "disallow_untyped_decorators" in o]
+    untyped = [o["module"] for o in settings["tool"]["mypy"]["overrides"] if "warn_return_any" in o]
     assert sorted(rule["source_modules"]) == kernels
     assert [sorted(m) for m in untyped] == [kernels]
 
@@ -140,6 +140,6 @@ def test_the_command_lines_page_has_every_command_and_option() -> None:
     page = (ROOT / "docs" / "command-line.md").read_text()
     commands = [c.callback.__name__ for c in app.registered_commands if c.callback is not None]
     assert commands == re.findall(r"^\| `twin (\w+)", page, flags=re.M)
-    options = set(re.findall(r'"(--[a-z-]+)"', (ROOT / "twin" / "cli" / "replay.py").read_text()))
+    options = set(re.findall(r'"(--[a-z-]+)"', (ROOT / "twin" / "cli" / "commands" / "replay.py").read_text()))
     assert options
     assert {o for o in options if o not in page} == set()

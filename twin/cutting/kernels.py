@@ -10,16 +10,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 #: What `ENGAGEMENT` summary entries mean.
 Z_LOW, Z_HIGH, SIDE_LOW, SIDE_HIGH, ARC, FRONT_AREA, NF_MAX = range(7)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def front_points(
     tips: FloatArray,
     feeds: FloatArray,
@@ -73,7 +73,7 @@ def front_points(
     return n
 
 
-@njit(cache=True, nogil=True)
+@njit
 def mark(places: NDArray[np.int32], inside: NDArray[np.bool_], status: NDArray[np.int8]) -> bool:
     """Write what was found at the front points into the status maps, in one dimension: 1 engaged, 0 not.
 
@@ -88,7 +88,7 @@ def mark(places: NDArray[np.int32], inside: NDArray[np.bool_], status: NDArray[n
     return engaged
 
 
-@njit(cache=True, nogil=True)
+@njit
 def transitions(status: NDArray[np.int8], places: NDArray[np.int32]) -> int:
     """Neighbouring front elements at one angle of which one is engaged: (step, row, lower column); their number."""
     steps, rows, elements = status.shape
@@ -104,7 +104,7 @@ def transitions(status: NDArray[np.int8], places: NDArray[np.int32]) -> int:
     return n
 
 
-@njit(cache=True, nogil=True)
+@njit
 def turns(status: NDArray[np.int8], first: int, places: NDArray[np.int32]) -> int:
     """Elements engaged at one of two neighbouring angles only: (step, first row, column), written from ``first`` on.
 
@@ -125,7 +125,7 @@ def turns(status: NDArray[np.int8], first: int, places: NDArray[np.int32]) -> in
     return n
 
 
-@njit(cache=True, nogil=True)
+@njit
 def boundary_points(
     tips: FloatArray,
     places: NDArray[np.int32],
@@ -160,7 +160,7 @@ def boundary_points(
         points[n, 2] = tips[s, 2] + z
 
 
-@njit(cache=True, nogil=True)
+@njit
 def narrow(inside: NDArray[np.bool_], first: NDArray[np.bool_], low: FloatArray, high: FloatArray) -> None:
     """One halving: the boundary lies behind the middle where that is like the first neighbour, else before it."""
     for n in range(len(low)):
@@ -171,7 +171,7 @@ def narrow(inside: NDArray[np.bool_], first: NDArray[np.bool_], low: FloatArray,
             high[n] = middle
 
 
-@njit(cache=True, nogil=True)
+@njit
 def weights(
     status: NDArray[np.int8],
     bounds: FloatArray,
@@ -214,7 +214,7 @@ def weights(
                         share[s, j, i] = share[s, after, i]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _summarise_one(
     share: FloatArray,
     turn: FloatArray,
@@ -281,7 +281,7 @@ def _summarise_one(
     out[FRONT_AREA], out[NF_MAX] = front_area, nf_max
 
 
-@njit(cache=True, nogil=True)
+@njit
 def summarise(
     share: FloatArray,
     turn: FloatArray,
@@ -318,7 +318,7 @@ def summarise(
         )
 
 
-@njit(cache=True, nogil=True)
+@njit
 def sum_forces(
     first_rad: float,
     period: int,
@@ -420,7 +420,7 @@ def sum_forces(
             out[s, c] = out[s - period, c]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def sum_forces_of_steps(
     first_rad: FloatArray,
     offsets: NDArray[np.int64],

@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 _GOLDEN = 0.6180339887498949
 _SEARCH_STEPS = 42
@@ -24,7 +24,7 @@ _MAX_DEPTH = 7
 _SAME_SECTION = 1e-12
 
 
-@njit(cache=True, nogil=True)
+@njit
 def profile_height(shape: FloatArray, rho: float) -> float:
     """Height of the tool's lower surface above its lowest point at distance rho <= largest radius from the axis."""
     if rho <= shape[0]:
@@ -37,7 +37,7 @@ def profile_height(shape: FloatArray, rho: float) -> float:
     return shape[4]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def profile_radius(shape: FloatArray, height: float) -> float:
     """Radius at a height above the lowest point, height in [0, shape height]."""
     if height >= shape[4]:
@@ -46,7 +46,7 @@ def profile_radius(shape: FloatArray, height: float) -> float:
     return shape[0] + math.sqrt(max(0.0, shape[1] * shape[1] - d * d))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def sphere_upper(
     a0: float,
     da: float,
@@ -89,7 +89,7 @@ def sphere_upper(
     return c0 + dc * t + math.sqrt(max(0.0, rest - square * off * off))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _covering_times(
     w0: float, dw: float, u0: float, du: float, radius: float, w: float, u: float
 ) -> tuple[float, float]:
@@ -110,7 +110,7 @@ def _covering_times(
     return max(0.0, middle - half), min(1.0, middle + half)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def lowest(
     shape: FloatArray, w0: float, dw: float, u0: float, du: float, z0: float, dz: float, w: float, u: float
 ) -> float:
@@ -135,7 +135,7 @@ def lowest(
     return base + _lowest_by_search(shape, w - w0, dw, u - u0, du, dz, first, last)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _lowest_by_search(
     shape: FloatArray, ew: float, dw: float, eu: float, du: float, dz: float, first: float, last: float
 ) -> float:
@@ -163,7 +163,7 @@ def _lowest_by_search(
     return min(best, f0, f1)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def highest(
     shape: FloatArray, w0: float, dw: float, u0: float, du: float, z0: float, dz: float, w: float, u: float
 ) -> float:
@@ -174,7 +174,7 @@ def highest(
     return z0 - shape[7] + shape[5] + max(dz * first, dz * last)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _side_by_search(
     shape: FloatArray, h0: float, dh: float, u0: float, du: float, v0: float, dv: float, u: float, ta: float, tb: float
 ) -> float:
@@ -221,13 +221,13 @@ def _side_by_search(
     return best
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _side_at(shape: FloatArray, height: float, off: float, v: float) -> float:
     radius = profile_radius(shape, height)
     return v + math.sqrt(max(0.0, radius * radius - off * off))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _edge_of_reach(shape: FloatArray, h0: float, dh: float, eu: float, du: float, inside: float, end: float) -> float:
     """The t nearest to ``end`` at which the disc still reaches over u, seen from one at which it does."""
     if profile_radius(shape, h0 + dh * end) >= abs(eu - du * end):
@@ -243,7 +243,7 @@ def _edge_of_reach(shape: FloatArray, h0: float, dh: float, eu: float, du: float
     return a
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _times_at_height(base: float, dz: float, z: float, low: float, high: float) -> tuple[float, float]:
     """Interval of t in [0, 1] with low <= z - base - dz t <= high; empty when first > last."""
     if dz == 0.0:
@@ -255,7 +255,7 @@ def _times_at_height(base: float, dz: float, z: float, low: float, high: float) 
     return max(0.0, min(t0, t1)), min(1.0, max(t0, t1))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def side(
     shape: FloatArray, z0: float, dz: float, u0: float, du: float, v0: float, dv: float, z: float, u: float
 ) -> float:
@@ -283,7 +283,7 @@ def side(
     return _side_by_search(shape, h0, -dz, u0, du, v0, dv, u, ta, tb)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _reach(shape: FloatArray, z0: float, dz: float, u0: float, du: float, z: float) -> float:
     """Largest u of the swept tool's section at height z; -inf where there is none."""
     base = z0 - shape[7]
@@ -311,7 +311,7 @@ def _reach(shape: FloatArray, z0: float, dz: float, u0: float, du: float, z: flo
     return best
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _strip_at(
     shape: FloatArray, horizontal: bool, start: FloatArray, move: FloatArray, w: float, u: float
 ) -> tuple[float, float]:
@@ -325,7 +325,7 @@ def _strip_at(
     return max(lo, start[2] + min(0.0, move[2])), hi
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _range_of_u(
     shape: FloatArray, horizontal: bool, start: FloatArray, move: FloatArray, w: float
 ) -> tuple[float, float]:
@@ -340,7 +340,7 @@ def _range_of_u(
     return low, high
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _off_chord(u: float, v: float, ua: float, va: float, ub: float, vb: float) -> float:
     """Distance of a point from the chord between two others."""
     du = ub - ua
@@ -351,7 +351,7 @@ def _off_chord(u: float, v: float, ua: float, va: float, ub: float, vb: float) -
     return abs((u - ua) * dv - (v - va) * du) / length
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _is_new(
     shape: FloatArray,
     horizontal: bool,
@@ -375,7 +375,7 @@ def _is_new(
     return lo < lo_still - same or hi > hi_still + same
 
 
-@njit(cache=True, nogil=True)
+@njit
 def section_nodes(
     shape: FloatArray,
     horizontal: bool,
@@ -497,7 +497,7 @@ def section_nodes(
     return written
 
 
-@njit(cache=True, nogil=True)
+@njit
 def outside_sweeps(
     points: FloatArray,
     candidates: NDArray[np.bool_],

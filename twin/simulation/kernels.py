@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 #: What the entries of `measure` mean.
 SUMS, PEAKS = slice(0, 5), slice(5, 11)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def measure(force: FloatArray, torque: FloatArray, power: FloatArray) -> FloatArray:
     """Sums and peaks of the samples of one step.
 

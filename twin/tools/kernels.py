@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 
-@njit(cache=True, nogil=True)
+@njit
 def meridian_points(s: FloatArray, disc: float, corner: float, taper: float, out: FloatArray) -> None:
     """Radius, height and kappa at lengths along the meridian from the axis.
 

@@ -9,25 +9,25 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _clamped(x: float, low: float, high: float, inset: float) -> float:
     """Keep x between two cell faces, a part ``inset`` of their distance from both."""
     return min(max(x, low + inset * (high - low)), high - inset * (high - low))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _dot(a: FloatArray, b: FloatArray) -> float:
     product: float = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     return product
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _centre(points: FloatArray, normals: FloatArray, normal: FloatArray) -> None:
     """Shift points so that their mean is 0; fill the unit mean normal (0 where the normals cancel).
 
@@ -47,7 +47,7 @@ def _centre(points: FloatArray, normals: FloatArray, normal: FloatArray) -> None
             normal[a] /= length
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _along_normal(points: FloatArray, normals: FloatArray, normal: FloatArray, shift: FloatArray) -> float:
     """The place on the mean normal nearest to the tangent planes; returns the least cosine of a normal to the mean."""
     smallest, top, bottom = 1.0, 0.0, 0.0
@@ -62,7 +62,7 @@ def _along_normal(points: FloatArray, normals: FloatArray, normal: FloatArray, s
     return smallest
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _nearest(points: FloatArray, normals: FloatArray, ramp: tuple[float, float], shift: FloatArray) -> None:
     """The place nearest to the tangent planes in directions that they determine well; the others fade out smoothly.
 
@@ -88,7 +88,7 @@ def _nearest(points: FloatArray, normals: FloatArray, ramp: tuple[float, float],
                 shift[a] += weight * dot * vectors[a, m]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _gather(
     node: int,
     strides: tuple[int, int, int],
@@ -110,7 +110,7 @@ def _gather(
     return n
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _case(inside: NDArray[np.bool_], node: int, strides: tuple[int, int, int]) -> int:
     """Which corners of a cell are inside, bit by bit."""
     case = 0
@@ -120,7 +120,7 @@ def _case(inside: NDArray[np.bool_], node: int, strides: tuple[int, int, int]) -
     return case
 
 
-@njit(cache=True, nogil=True)
+@njit
 def place_vertices(
     inside: NDArray[np.bool_],
     x: FloatArray,
@@ -191,7 +191,7 @@ def place_vertices(
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def join_quads(
     shape: tuple[int, int, int],
     own: tuple[int, int],
@@ -235,7 +235,7 @@ def join_quads(
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def split_quads(
     quads: NDArray[np.int32], vertices: FloatArray, creased: NDArray[np.bool_], triangles: NDArray[np.int32]
 ) -> None:

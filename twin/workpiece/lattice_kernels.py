@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 
-@njit(cache=True, nogil=True)
+@njit
 def vote(
     offsets: NDArray[np.int64],
     ends: FloatArray,
@@ -41,7 +41,7 @@ def vote(
                 n += 1
 
 
-@njit(cache=True, nogil=True)
+@njit
 def number_edges(
     inside: NDArray[np.bool_], shape: tuple[int, int, int], numbers: NDArray[np.int32], axes: NDArray[np.int8]
 ) -> int:
@@ -69,7 +69,7 @@ def number_edges(
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def measure(
     offsets: NDArray[np.int64],
     ends: FloatArray,

@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _line_fits(points: FloatArray, i: int, j: int, left: float, right: float) -> bool:
     """Whether the chord from point i to j lies within ``left`` to the left and ``right`` to the right of the points."""
     ux, uy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
@@ -36,7 +36,7 @@ def _line_fits(points: FloatArray, i: int, j: int, left: float, right: float) ->
     return True
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _arc_through(points: FloatArray, i: int, j: int, arc: FloatArray) -> bool:
     """The circle through points i and j that is nearest to those between; False without one.
 
@@ -73,7 +73,7 @@ def _arc_through(points: FloatArray, i: int, j: int, arc: FloatArray) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _arc_fits(
     points: FloatArray,
     i: int,
@@ -111,7 +111,7 @@ def _arc_fits(
     return True
 
 
-@njit(cache=True, nogil=True)
+@njit
 def fit_plane(
     points: FloatArray,
     left: float,
@@ -176,7 +176,7 @@ def fit_plane(
     return pieces
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _chord_fits(points: FloatArray, i: int, j: int, most: float) -> bool:
     """Whether the points between i and j lie within ``most`` of the chord and go forward along it, in space."""
     ux, uy, uz = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1], points[j, 2] - points[i, 2]
@@ -195,7 +195,7 @@ def _chord_fits(points: FloatArray, i: int, j: int, most: float) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True)
+@njit
 def thin_space(points: FloatArray, most: float, ends: NDArray[np.int64]) -> int:
     """Fit chords to a polyline in space; arguments and result as those of `fit_plane`."""
     n = len(points)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 
-@njit(cache=True, nogil=True)
+@njit
 def corner_speeds(
     length: FloatArray,
     into: FloatArray,
@@ -59,7 +59,7 @@ def corner_speeds(
         corner[k] = most
 
 
-@njit(cache=True, nogil=True)
+@njit
 def block_times(
     length: FloatArray, speed: FloatArray, acceleration: FloatArray, corner: FloatArray, times: FloatArray
 ) -> None:
@@ -81,7 +81,7 @@ def block_times(
             times[k] += max(0.0, length[k] - ramps) / peak
 
 
-@njit(cache=True, nogil=True)
+@njit
 def directions(points: FloatArray, length: FloatArray, direction: FloatArray) -> None:
     """Lengths and unit directions of the pieces of a polyline; a piece without length has direction 0."""
     for k in range(len(points) - 1):

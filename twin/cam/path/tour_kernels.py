@@ -15,10 +15,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 #: Time of a link that must stay as it is.
 _FIXED = -1e7
@@ -29,7 +29,7 @@ _MOST_SEGMENT = 50
 _MOST_MOVES = 1000
 
 
-@njit(cache=True, nogil=True)
+@njit
 def trapezoid_s(length: float, speed: float, acceleration: float) -> float:
     """Time from rest to rest over a length."""
     if length * acceleration < speed * speed:
@@ -37,7 +37,7 @@ def trapezoid_s(length: float, speed: float, acceleration: float) -> float:
     return length / speed + speed / acceleration
 
 
-@njit(cache=True, nogil=True)
+@njit
 def trapezoids_s(lengths: FloatArray, speed: float, acceleration: float) -> FloatArray:
     """`trapezoid_s` of a table of lengths."""
     times = np.empty_like(lengths)
@@ -47,7 +47,7 @@ def trapezoids_s(lengths: FloatArray, speed: float, acceleration: float) -> Floa
     return times
 
 
-@njit(cache=True, nogil=True)
+@njit
 def distinct(near: NDArray[np.int64], distances: FloatArray, table: NDArray[np.int64], reach: FloatArray) -> None:
     """The pieces of the nearest ends of each end, nearest first, each once and not its own; the last one fills up."""
     for e in range(near.shape[0]):
@@ -64,7 +64,7 @@ def distinct(near: NDArray[np.int64], distances: FloatArray, table: NDArray[np.i
             table[e, j], reach[e, j] = table[e, j - 1], reach[e, j - 1]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _sees(ax: float, ay: float, bx: float, by: float, clear: FloatArray, grid: FloatArray) -> bool:
     """Whether a straight line keeps off the walls: it leaps as far as the distance to the nearest one allows."""
     length = math.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
@@ -81,7 +81,7 @@ def _sees(ax: float, ay: float, bx: float, by: float, clear: FloatArray, grid: F
         s = min(length, s + max(0.5 * pitch, clear[i, j] - pitch))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def link_s(
     e: int, f: int, ends: FloatArray, lift: FloatArray, speeds: FloatArray, clear: FloatArray, grid: FloatArray
 ) -> float:
@@ -100,7 +100,7 @@ def link_s(
     return stay if _sees(ax, ay, bx, by, clear, grid) else over
 
 
-@njit(cache=True, nogil=True)
+@njit
 def links_down(
     out: NDArray[np.int64],
     into: NDArray[np.int64],
@@ -119,7 +119,7 @@ def links_down(
         down[k] = link_s(e, f, ends, lift, speeds, clear, grid) < over
 
 
-@njit(cache=True, nogil=True)
+@njit
 def greedy(
     ends: FloatArray,
     lift: FloatArray,
@@ -194,7 +194,7 @@ def greedy(
     return tour, back
 
 
-@njit(cache=True, nogil=True)
+@njit
 def tour_s(
     tour: NDArray[np.int64],
     back: NDArray[np.int8],
@@ -212,7 +212,7 @@ def tour_s(
     return total
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _reverse(tour: NDArray[np.int64], back: NDArray[np.int8], place: NDArray[np.int64], first: int, last: int) -> None:
     """Run positions first..last of the closed tour the other way."""
     n = len(tour)
@@ -233,7 +233,7 @@ def _reverse(tour: NDArray[np.int64], back: NDArray[np.int8], place: NDArray[np.
         back[i] = 1 - back[i]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _turn(
     tour: NDArray[np.int64], back: NDArray[np.int8], place: NDArray[np.int64], log: NDArray[np.int64],
     first: int, last: int,
@@ -248,7 +248,7 @@ def _turn(
     log[0] = count + 1
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _turn_shorter(
     tour: NDArray[np.int64], back: NDArray[np.int8], place: NDArray[np.int64], log: NDArray[np.int64],
     first: int, last: int,
@@ -260,7 +260,7 @@ def _turn_shorter(
     _turn(tour, back, place, log, first, last)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _push(queue: NDArray[np.int64], waits: NDArray[np.bool_], node: int) -> None:
     """Put a piece at the end of the ring of those to look at; its first two entries are head and count."""
     if waits[node]:
@@ -271,7 +271,7 @@ def _push(queue: NDArray[np.int64], waits: NDArray[np.bool_], node: int) -> None
     waits[node] = True
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _pop(queue: NDArray[np.int64], waits: NDArray[np.bool_]) -> int:
     size = len(queue) - 2
     node = queue[2 + queue[0]]
@@ -281,7 +281,7 @@ def _pop(queue: NDArray[np.int64], waits: NDArray[np.bool_]) -> int:
     return int(node)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _swap_neighbours(
     tour: NDArray[np.int64], back: NDArray[np.int8], place: NDArray[np.int64], log: NDArray[np.int64],
     a: int, b: int, c: int,
@@ -293,7 +293,7 @@ def _swap_neighbours(
     _turn(tour, back, place, log, a + size, c - 1)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _insert(
     tour: NDArray[np.int64], back: NDArray[np.int8], place: NDArray[np.int64], log: NDArray[np.int64],
     first: int, last: int, u: int, turned: bool,
@@ -314,7 +314,7 @@ def _insert(
         _swap_neighbours(tour, back, place, log, u + 1, first, last + 1)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _improve(
     node: int,
     tour: NDArray[np.int64],
@@ -407,7 +407,7 @@ def _improve(
     return 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _settle(
     tour: NDArray[np.int64],
     back: NDArray[np.int8],
@@ -441,7 +441,7 @@ def _settle(
     return total
 
 
-@njit(cache=True, nogil=True)
+@njit
 def local_search(
     tour: NDArray[np.int64],
     back: NDArray[np.int8],
@@ -466,7 +466,7 @@ def local_search(
     return _settle(tour, back, place, near, soonest, ends, lift, speeds, clear, grid, two_way, log, queue, waits)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _state(
     tour: NDArray[np.int64],
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64]]:
@@ -477,7 +477,7 @@ def _state(
     return place, np.zeros(n + 3, dtype=np.int64), np.zeros(n, dtype=np.bool_), np.zeros(4001, dtype=np.int64)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def iterate(
     random: int,
     iterations: int,

@@ -13,10 +13,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 #: Nodes of the table that finds where a bull-nose tool touches a slope.
 _TABLE = 65
@@ -34,7 +34,7 @@ _TIE = 1e-7
 _SAME_MM = 1e-7
 
 
-@njit(cache=True, nogil=True)
+@njit
 def profile_pieces(
     points: FloatArray,
     rings: NDArray[np.int64],
@@ -92,14 +92,14 @@ def profile_pieces(
     segment_begins[len(sections) - 1], corner_begins[len(sections) - 1] = ns, nc
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _sort_rows(rows: FloatArray) -> None:
     """Put rows in the order of their first number."""
     order = np.argsort(rows[:, 0], kind="mergesort")
     rows[:] = rows.copy()[order]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _first_from(numbers: FloatArray, least: float) -> int:
     """The first of some numbers that do not decrease that is at least this."""
     low, high = 0, len(numbers)
@@ -112,7 +112,7 @@ def _first_from(numbers: FloatArray, least: float) -> int:
     return low
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _outline(s: float, d2: float, disc: float, corner: float) -> float:
     """Height of the tool above its lowest point, at a place s along a plane that is sqrt(d2) off its axis."""
     if disc == 0.0:
@@ -121,7 +121,7 @@ def _outline(s: float, d2: float, disc: float, corner: float) -> float:
     return 0.0 if over <= 0.0 else corner - math.sqrt(max(0.0, corner * corner - over * over))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _touch_table(d2: float, disc: float, corner: float, width: float, place: FloatArray, slope: FloatArray) -> None:
     """Places along the outline and the slopes there, from flat to upright."""
     flat = math.sqrt(max(0.0, disc * disc - d2))
@@ -138,7 +138,7 @@ def _touch_table(d2: float, disc: float, corner: float, width: float, place: Flo
             slope[k] = 0.0 if over <= 0.0 else over / math.sqrt(rest) * s / radius
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _touch(nu: float, nv: float, place: FloatArray, slope: FloatArray) -> float:
     """Where a tool with a flat bottom stands along the plane, from where it touches a side with this normal."""
     side = 1.0 if nu > 0.0 else -1.0
@@ -156,7 +156,7 @@ def _touch(nu: float, nv: float, place: FloatArray, slope: FloatArray) -> float:
     return side * (place[k - 1] + share * (place[k] - place[k - 1]))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _shifts(
     normals_u: FloatArray,
     normals_v: FloatArray,
@@ -175,7 +175,7 @@ def _shifts(
             shifts[i] = _touch(normals_u[i], normals_v[i], place, slope)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _spans(
     left: FloatArray,
     right: FloatArray,
@@ -197,7 +197,7 @@ def _spans(
         last[i] = min(most, np.floor((right[i] + right_shifts[i] - start) * inverse + _TIE))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _section_row(
     segments: FloatArray,
     corners: FloatArray,
@@ -254,7 +254,7 @@ def _section_row(
                     row[k] = max(row[k], v - _outline(s, d2, disc, corner))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _bend(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
     """Half the second derivative across sections j - 1, j, j + 1; NaN where one of them is missing."""
     if j < 1 or j + 1 >= len(rows) or not (rows[j - 1, i] > -math.inf and rows[j + 1, i] > -math.inf):
@@ -265,7 +265,7 @@ def _bend(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
     return ((rows[j + 1, i] - rows[j, i]) / h2 - (rows[j, i] - rows[j - 1, i]) / h1) / (h1 + h2)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _between(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
     """How much higher than at section j, the highest, a smooth part is between sections."""
     bend = _bend(y, rows, j, i)
@@ -278,14 +278,14 @@ def _between(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
     return -0.25 * climb * climb / bend
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _reach(positions: FloatArray, plane: float, radius: float) -> tuple[int, int]:
     """First and one past the last section that a tool at a plane can touch."""
     first = np.searchsorted(positions, plane - radius, side="right")
     return int(first), int(np.searchsorted(positions, plane + radius, side="left"))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _highest(y: FloatArray, rows: FloatArray, smooth: bool, heights: FloatArray, best: NDArray[np.int64]) -> None:
     """The highest of all rows at every place, and which it is."""
     heights[:] = -math.inf
@@ -301,7 +301,7 @@ def _highest(y: FloatArray, rows: FloatArray, smooth: bool, heights: FloatArray,
                 heights[i] += _between(y, rows, best[i], i)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _profile_row(segments: FloatArray, begin: int, end: int, start: float, step: float, row: FloatArray) -> None:
     """Heights of a section itself, whose segments are given by where they begin and end."""
     row[:] = -math.inf
@@ -316,7 +316,7 @@ def _profile_row(segments: FloatArray, begin: int, end: int, start: float, step:
             row[k] = max(row[k], segments[1, i] + climb * (start + step * k - segments[0, i]))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _most_pieces(segment_begins: NDArray[np.int64], corner_begins: NDArray[np.int64]) -> int:
     """Most segments or corners of a section."""
     most = 0
@@ -325,7 +325,7 @@ def _most_pieces(segment_begins: NDArray[np.int64], corner_begins: NDArray[np.in
     return most
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _raise_ends(
     segments: FloatArray,
     segment_begins: NDArray[np.int64],
@@ -360,7 +360,7 @@ def _raise_ends(
                     _raise_between(segments, segment_begins, positions, k, inner, at, begin, step, two, heights)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _raise_between(
     segments: FloatArray,
     segment_begins: NDArray[np.int64],
@@ -383,7 +383,7 @@ def _raise_between(
             heights[i] = max(heights[i], two[0, i] + share * (two[1, i] - two[0, i]))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def envelope(
     segments: FloatArray,
     segment_begins: NDArray[np.int64],
@@ -447,7 +447,7 @@ def envelope(
                 best[p, i] += first
 
 
-@njit(cache=True, nogil=True)
+@njit
 def refine(
     segments: FloatArray,
     segment_begins: NDArray[np.int64],

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 #: Change of slope that makes an inner corner, and slope that makes a wall.
 _CORNER = 0.02
 _WALL = 50.0
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _joined(
     heights: FloatArray, cells: NDArray[np.int64], finer: FloatArray, start: float, step: float, line: FloatArray
 ) -> int:
@@ -32,12 +32,12 @@ def _joined(
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _slope(line: FloatArray, i: int) -> float:
     return (line[i + 1, 1] - line[i, 1]) / (line[i + 1, 0] - line[i, 0])
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _with_corners(line: FloatArray, made: FloatArray) -> int:
     """A line with the points where an inner corner lies between two of its points: where its sides, drawn on, meet."""
     count = 0
@@ -54,7 +54,7 @@ def _with_corners(line: FloatArray, made: FloatArray) -> int:
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _with_walls(line: FloatArray, made: FloatArray) -> int:
     """A line that goes upright where it is nearly so, on the side away from the wall."""
     count = 0
@@ -71,7 +71,7 @@ def _with_walls(line: FloatArray, made: FloatArray) -> int:
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def lines(
     heights: FloatArray,
     begins: NDArray[np.int64],

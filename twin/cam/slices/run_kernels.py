@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 
-@njit(cache=True, nogil=True)
+@njit
 def runs(marked: NDArray[np.bool_], spacing: FloatArray, bridge: float, bounds: NDArray[np.int64]) -> int:
     """Runs of marked points; gaps shorter than a bridge are run through.
 

@@ -11,16 +11,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 #: Dexels along a block's side.
 BLOCK = 8
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _profile(tool: FloatArray, rho: float) -> float:
     """Height of the tool's surface above the tip at a distance from the axis, at most the radius."""
     if rho <= tool[0]:
@@ -33,7 +33,7 @@ def _profile(tool: FloatArray, rho: float) -> float:
     return tool[4]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _lean(tool: FloatArray, rho: float) -> float:
     """Slope of the meridian at a distance from the axis, up to the radius."""
     if rho <= tool[0]:
@@ -45,7 +45,7 @@ def _lean(tool: FloatArray, rho: float) -> float:
     return 1.0 / tool[2] if tool[2] > 0.0 else math.inf
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> float:
     """S in [0, limit] with the largest slope s - h(sqrt(q q + s s)), slope >= 0 and h the convex meridian.
 
@@ -98,7 +98,7 @@ def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> fl
     return min(limit, flat)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def block_maxima(heights: FloatArray, maxima: FloatArray) -> None:
     """Largest height of every block, shape (blocks along x, blocks along y)."""
     for i in range(maxima.shape[0]):
@@ -106,7 +106,7 @@ def block_maxima(heights: FloatArray, maxima: FloatArray) -> None:
             maxima[i, j] = heights[i * BLOCK : (i + 1) * BLOCK, j * BLOCK : (j + 1) * BLOCK].max()
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _ball_block(
     heights: FloatArray,
     i0: int,
@@ -160,7 +160,7 @@ def _ball_block(
             largest[j] = max(largest[j], new)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _flat_block(
     heights: FloatArray,
     i0: int,
@@ -205,7 +205,7 @@ def _flat_block(
             largest[j] = max(largest[j], new)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _round_block(
     heights: FloatArray,
     i0: int,
@@ -273,7 +273,7 @@ def _round_block(
                 row[j] = max(bottom, z)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _reached(
     maxima: FloatArray,
     near: NDArray[np.bool_],
@@ -317,7 +317,7 @@ def _reached(
         near[j] = (over > 0.0) & (maxima[j] > underside) & (away <= reach * reach)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def cut_lines(
     heights: FloatArray,
     maxima: FloatArray,
@@ -428,7 +428,7 @@ def cut_lines(
                 maxima[i, j] = largest.max()
 
 
-@njit(cache=True, nogil=True)
+@njit
 def cut_arcs(
     heights: FloatArray,
     maxima: FloatArray,
@@ -493,7 +493,7 @@ def cut_arcs(
                 maxima[i, j] = largest
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _from_arc(
     x: float,
     y: float,
@@ -516,7 +516,7 @@ def _from_arc(
     return ends
 
 
-@njit(cache=True, nogil=True)
+@njit
 def rest_heights(
     heights: FloatArray,
     maxima: FloatArray,
@@ -571,7 +571,7 @@ def rest_heights(
         out[k] = best
 
 
-@njit(cache=True, nogil=True)
+@njit
 def thinned(points: FloatArray, spacing: float, chosen: NDArray[np.bool_]) -> None:
     """Choose points, in their order, that stand at least ``spacing`` from all chosen before.
 

@@ -15,10 +15,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 #: Patches are enlarged by this much, mm.
 _MARGIN = 1e-6
@@ -28,7 +28,7 @@ _BEYOND = 1e-9
 _PIECE_RAD = 0.2
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _profile(tool: FloatArray, rho: float) -> float:
     """Height of the tool's surface above the tip at a distance from the axis, at most the radius."""
     if rho <= tool[0]:
@@ -41,7 +41,7 @@ def _profile(tool: FloatArray, rho: float) -> float:
     return tool[4]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def face_patches(
     vertices: FloatArray, triangles: NDArray[np.int64], normals: FloatArray, tool: FloatArray, faces: FloatArray
 ) -> None:
@@ -78,7 +78,7 @@ def face_patches(
         faces[t, 9] = faces[t, 2] + max(0.0, faces[t, 7], faces[t, 8])
 
 
-@njit(cache=True, nogil=True)
+@njit
 def edge_patches(vertices: FloatArray, ends: NDArray[np.int64], edges: FloatArray) -> None:
     """Edges as queries need them.
 
@@ -97,7 +97,7 @@ def edge_patches(vertices: FloatArray, ends: NDArray[np.int64], edges: FloatArra
         edges[e, 8] = max(vertices[a, 2], vertices[b, 2])
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _list_patch(
     x0: float,
     y0: float,
@@ -164,7 +164,7 @@ def _list_patch(
             counts[cell] += 1
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _widen_by_tool(
     tool: FloatArray,
     level: FloatArray,
@@ -184,7 +184,7 @@ def _widen_by_tool(
         box[high] = min(box[high], tool[6])
 
 
-@njit(cache=True, nogil=True)
+@njit
 def list_faces(
     vertices: FloatArray,
     triangles: NDArray[np.int64],
@@ -210,7 +210,7 @@ def list_faces(
         _list_patch(x0, y0, x1, y1, x2, y2, box, grid, columns, rows, t, fill, counts, entries)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def list_edges(
     edges: FloatArray,
     cones: FloatArray,
@@ -263,7 +263,7 @@ def list_edges(
             _list_patch(x0, y0, x1, y1, x1, y1, box, grid, columns, rows, number + e, fill, counts, entries)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _largest_share(high: float, least: float, most: float, one: float) -> float:
     """Largest x / sqrt(one + x x + y y) with x <= high and y in [least, most]."""
     if high >= 1e6:
@@ -275,7 +275,7 @@ def _largest_share(high: float, least: float, most: float, one: float) -> float:
     return high / root if root > 0.0 else 1.0
 
 
-@njit(cache=True, nogil=True)
+@njit
 def list_vertices(
     vertices: FloatArray,
     cones: FloatArray,
@@ -310,7 +310,7 @@ def list_vertices(
         _list_patch(x, y, x, y, x, y, box, grid, columns, rows, number + v, fill, counts, entries)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> float:
     """Where along a line the tool rests: s in [0, limit] with the largest slope s - h(sqrt(q q + s s)), slope >= 0.
 
@@ -364,7 +364,7 @@ def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> fl
     return min(limit, flat)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _tip_on_edge(
     tool: FloatArray, ball: bool, edge: FloatArray, x: float, y: float, best: float
 ) -> tuple[float, float]:
@@ -396,7 +396,7 @@ def _tip_on_edge(
     return edge[2] + part * edge[6] - _profile(tool, min(tool[6], math.sqrt(q * q + s * s))), part
 
 
-@njit(cache=True, nogil=True)
+@njit
 def drop(
     points: FloatArray,
     first: int,
@@ -453,7 +453,7 @@ def drop(
         heights[i], elements[i] = best, touched
 
 
-@njit(cache=True, nogil=True)
+@njit
 def contacts(
     points: FloatArray,
     elements: NDArray[np.int32],

@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 #: Cones thinner than this have no part of their own: neighbours touch there, up to R times this.
 _THIN_RAD = 1e-10
@@ -24,7 +24,7 @@ _WIDEN_RAD = 1e-9
 _STEEPEST = 1e6
 
 
-@njit(cache=True, nogil=True)
+@njit
 def edge_runs(triangles: NDArray[np.int64], vertices: int, order: NDArray[np.int64], begins: NDArray[np.int64]) -> int:
     """Group the sides of triangles by the edge they lie on.
 
@@ -76,7 +76,7 @@ def edge_runs(triangles: NDArray[np.int64], vertices: int, order: NDArray[np.int
     return edges
 
 
-@njit(cache=True, nogil=True)
+@njit
 def edge_cones(
     vertices: FloatArray,
     triangles: NDArray[np.int64],
@@ -137,7 +137,7 @@ def edge_cones(
             cones[e, 1] = min(math.pi, high + _WIDEN_RAD + doubt)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def vertex_edges(ends: NDArray[np.int64], vertices: int, begins: NDArray[np.int64], listed: NDArray[np.int64]) -> int:
     """List every vertex's edges.
 
@@ -164,7 +164,7 @@ def vertex_edges(ends: NDArray[np.int64], vertices: int, begins: NDArray[np.int6
     return most
 
 
-@njit(cache=True, nogil=True)
+@njit
 def vertex_cones(
     vertices: FloatArray,
     ends: NDArray[np.int64],
@@ -223,7 +223,7 @@ def vertex_cones(
             cones[v, 2], cones[v, 3] = py[:count].min(), py[:count].max()
 
 
-@njit(cache=True, nogil=True)
+@njit
 def face_slopes(vertices: FloatArray, triangles: NDArray[np.int64], normals: FloatArray) -> None:
     """Unit normals turned upwards, shape (m, 3); nz = 0 for triangles on edge or without area."""
     for t in range(len(triangles)):

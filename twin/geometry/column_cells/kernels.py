@@ -22,10 +22,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 EMPTY, FULL, PARTIAL = 0, 1, 2
 #: What `cut_planes` and `fill_plane` return when they ran out of room, to be called again.
@@ -39,7 +39,7 @@ PAGE_TILES = 1 << PAGE_BITS
 _IN_PAGE = PAGE_TILES - 1
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _line(u: float, ua: float, va: float, ub: float, vb: float) -> float:
     """The v on the straight line through two points, exact at both."""
     if u == ua:
@@ -49,7 +49,7 @@ def _line(u: float, ua: float, va: float, ub: float, vb: float) -> float:
     return va + (vb - va) * ((u - ua) / (ub - ua))
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _block_class(count: int) -> int:
     """Smallest power of two, as an exponent above the smallest block, that holds ``count`` edges."""
     size = _SMALLEST_BLOCK
@@ -60,7 +60,7 @@ def _block_class(count: int) -> int:
     return exponent
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _release(cell: int, cells: NDArray[np.int32], pool: FloatArray, free: NDArray[np.int64]) -> None:
     if cells[cell, _ROOM] > 0:
         exponent = _block_class(cells[cell, _ROOM])
@@ -69,7 +69,7 @@ def _release(cell: int, cells: NDArray[np.int32], pool: FloatArray, free: NDArra
         cells[cell, _ROOM] = 0
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _store(
     cell: int,
     edges: FloatArray,
@@ -110,7 +110,7 @@ def _store(
     return True
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _cell_area(edges: FloatArray, begin: int, count: int, floor: float) -> float:
     area = 0.0
     for i in range(begin, begin + count):
@@ -118,7 +118,7 @@ def _cell_area(edges: FloatArray, begin: int, count: int, floor: float) -> float
     return area
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _emit(
     out: FloatArray, count: int, ua: float, ub: float, u0: float, v0: float, u1: float, v1: float, sign: float
 ) -> int:
@@ -133,14 +133,14 @@ def _emit(
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _crossing(a: float, b: float, da: float, db: float) -> float:
     """Where a linear difference, da at a and db at b, of unlike sides, passes 0; in [a, b]."""
     u = a + (b - a) * (da / (da - db))
     return min(max(u, a), b)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _split_segments(
     nodes: FloatArray, first: int, last: int, a0: float, a1: float, floor: float, top: float, segments: FloatArray
 ) -> int:
@@ -198,7 +198,7 @@ def _split_segments(
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _emit_odd(
     toggles: FloatArray,
     n: int,
@@ -233,7 +233,7 @@ def _emit_odd(
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _side_of(
     segment: FloatArray, column: int, a: float, b: float, va: float, vb: float, toggles: FloatArray, n: int
 ) -> tuple[bool, bool, float, int]:
@@ -262,7 +262,7 @@ def _side_of(
     return above_a, above_b, u, n
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _cut_edges(
     edges: FloatArray,
     begin: int,
@@ -345,7 +345,7 @@ def _cut_edges(
     return _emit_odd(toggles_hi, n_hi, segments, pieces, 4, -1.0, out, count)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _own_page(
     plane: int,
     column: int,
@@ -382,7 +382,7 @@ def _own_page(
     return DONE
 
 
-@njit(cache=True, nogil=True)
+@njit
 def cut_planes(
     first: int,
     offsets: NDArray[np.int64],
@@ -529,7 +529,7 @@ def cut_planes(
     return DONE
 
 
-@njit(cache=True, nogil=True)
+@njit
 def fill_plane(
     edges: FloatArray,
     alone: bool,
@@ -659,7 +659,7 @@ def fill_plane(
     return DONE
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _go_on(edges: FloatArray, begin: float, end: float) -> bool:
     """Whether all edges between two u run level from the one to the other."""
     for e in range(len(edges)):
@@ -669,7 +669,7 @@ def _go_on(edges: FloatArray, begin: float, end: float) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _move_page(at: int, used: NDArray[np.int64], cells: NDArray[np.int32]) -> int:
     """Move a page down to the first cells that are not in use; returns where it is then."""
     to = used[0]
@@ -681,7 +681,7 @@ def _move_page(at: int, used: NDArray[np.int64], cells: NDArray[np.int32]) -> in
     return to
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _spans_top(edges: FloatArray, count: int, c0: float, c1: float, top: float) -> bool:
     """Whether a cell's edges are nothing but a closing edge over its whole width."""
     covered = 0.0
@@ -692,7 +692,7 @@ def _spans_top(edges: FloatArray, count: int, c0: float, c1: float, top: float) 
     return count > 0 and covered >= (c1 - c0) * (1.0 - 1e-12)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _odd_above(u: float, v: float, begin: int, end: int, pool: FloatArray) -> bool:
     """Whether an odd number of a cell's edges lies above a point."""
     inside = False
@@ -703,7 +703,7 @@ def _odd_above(u: float, v: float, begin: int, end: int, pool: FloatArray) -> bo
     return inside
 
 
-@njit(cache=True, nogil=True)
+@njit
 def contains(
     points: FloatArray,
     normal_axis: int,
@@ -744,7 +744,7 @@ def contains(
             votes[i] += 1
 
 
-@njit(cache=True, nogil=True)
+@njit
 def plane_trapezoids(
     tables: NDArray[np.int64],
     page: NDArray[np.int64],

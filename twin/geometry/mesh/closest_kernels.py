@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 #: Features of a triangle: its face, its edges AB, BC, CA, its corners A, B, C.
 _FACE, _AB, _BC, _CA, _A, _B, _C = 0, 1, 2, 3, 4, 5, 6
@@ -21,7 +21,7 @@ _FACE, _AB, _BC, _CA, _A, _B, _C = 0, 1, 2, 3, 4, 5, 6
 _STACK = 96
 
 
-@njit(cache=True, nogil=True)
+@njit
 def fill_boxes(corners: FloatArray, leaf: int, levels: int, boxes: FloatArray) -> None:
     """The boxes of a tree, from the leaves up.
 
@@ -48,7 +48,7 @@ def fill_boxes(corners: FloatArray, leaf: int, levels: int, boxes: FloatArray) -
             boxes[node, 3 + a] = max(boxes[2 * node + 1, 3 + a], boxes[2 * node + 2, 3 + a])
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _box_distance2(boxes: FloatArray, node: int, x: float, y: float, z: float) -> float:
     if boxes[node, 0] > boxes[node, 3]:
         return math.inf
@@ -58,7 +58,7 @@ def _box_distance2(boxes: FloatArray, node: int, x: float, y: float, z: float) -
     return dx * dx + dy * dy + dz * dz
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _on_triangle(corners: FloatArray, t: int, x: float, y: float, z: float, found: FloatArray) -> int:
     """The closest point of a triangle; fills ``found`` with it and its squared distance, gives the feature it is on."""
     ax, ay, az = corners[t, 0], corners[t, 1], corners[t, 2]
@@ -107,7 +107,7 @@ def _on_triangle(corners: FloatArray, t: int, x: float, y: float, z: float, foun
     return feature
 
 
-@njit(cache=True, nogil=True)
+@njit
 def closest(
     points: FloatArray,
     first: int,

@@ -8,13 +8,13 @@ decides anything. The point on an edge is computed from the edge alone, never fr
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 
-@njit(cache=True, nogil=True)
+@njit
 def weld(points: NDArray[np.int64], ids: NDArray[np.int64], first: NDArray[np.int64]) -> int:
     """Give equal points equal numbers, in the order in which they come first.
 
@@ -56,7 +56,7 @@ def weld(points: NDArray[np.int64], ids: NDArray[np.int64], first: NDArray[np.in
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def number_edges(
     triangles: NDArray[np.int64],
     vertices: int,
@@ -106,7 +106,7 @@ def number_edges(
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def plane_ranges(
     heights: FloatArray, triangles: NDArray[np.int64], planes: FloatArray, first: NDArray[np.int64]
 ) -> NDArray[np.int64]:
@@ -133,7 +133,7 @@ def plane_ranges(
     return begins
 
 
-@njit(cache=True, nogil=True)
+@njit
 def fill_segments(
     heights: FloatArray,
     triangles: NDArray[np.int64],
@@ -168,7 +168,7 @@ def fill_segments(
             cursor[k] += 1
 
 
-@njit(cache=True, nogil=True)
+@njit
 def chain_rings(
     segments: NDArray[np.int64], begins: NDArray[np.int64], edges: int, order: NDArray[np.int64]
 ) -> NDArray[np.int64]:
@@ -207,7 +207,7 @@ def chain_rings(
     return rings[:count]
 
 
-@njit(cache=True, nogil=True)
+@njit
 def edge_points(
     vertices: FloatArray,
     edges: NDArray[np.int64],
@@ -235,7 +235,7 @@ def edge_points(
             points[i, 1] = vertices[a, v] + t * (vertices[b, v] - vertices[a, v])
 
 
-@njit(cache=True, nogil=True)
+@njit
 def clean_rings(
     points: FloatArray,
     rings: NDArray[np.int64],
@@ -288,13 +288,13 @@ def clean_rings(
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _straight(au: int, av: int, bu: int, bv: int, cu: int, cv: int) -> bool:
     """Whether b lies on the line through a and c, exactly."""
     return (bu - au) * (cv - bv) == (bv - av) * (cu - bu)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _twice_area(whole: NDArray[np.int64], first: int, last: int) -> float:
     """Twice the area of a ring, counter-clockwise positive."""
     total = 0.0
@@ -305,14 +305,14 @@ def _twice_area(whole: NDArray[np.int64], first: int, last: int) -> float:
     return total
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _side(au: int, av: int, bu: int, bv: int, cu: int, cv: int) -> int:
     """1, 0, -1: c lies left of, on, right of the line from a to b, exactly."""
     cross = (bu - au) * (cv - av) - (bv - av) * (cu - au)
     return 1 if cross > 0 else (-1 if cross < 0 else 0)
 
 
-@njit(cache=True, nogil=True)
+@njit
 def simple_planes(whole: NDArray[np.int64], rings: NDArray[np.int64], simple: NDArray[np.bool_]) -> None:
     """Which planes have rings that neither cross nor touch, material on their left: nothing is to be united there.
 
@@ -332,7 +332,7 @@ def simple_planes(whole: NDArray[np.int64], rings: NDArray[np.int64], simple: ND
         begin = end
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _any_touch(whole: NDArray[np.int64], rings: NDArray[np.int64]) -> bool:
     """Whether edges of rings meet anywhere but at the corner between neighbours: a sweep along u."""
     count = 0
@@ -382,7 +382,7 @@ def _any_touch(whole: NDArray[np.int64], rings: NDArray[np.int64]) -> bool:
     return False
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _well_nested(whole: NDArray[np.int64], rings: NDArray[np.int64]) -> bool:
     """Whether just outside of every counter-clockwise ring there is nothing, and of every clockwise one material."""
     for r in range(len(rings)):

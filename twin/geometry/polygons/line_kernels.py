@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.jit import njit
 
 _EMPTY, _FULL = 0, 1
 #: Columns of the array of cells, as there.
@@ -22,7 +22,7 @@ _STATE, _START, _SIZE = 0, 1, 2
 _PAGE_BITS, _IN_PAGE = 3, 7
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _sort(ends: FloatArray, slopes: FloatArray, first: int, last: int) -> None:
     """Insertion sort of a few ends with their slopes."""
     for i in range(first + 1, last):
@@ -34,7 +34,7 @@ def _sort(ends: FloatArray, slopes: FloatArray, first: int, last: int) -> None:
         ends[j], slopes[j] = end, slope
 
 
-@njit(cache=True, nogil=True)
+@njit
 def _join(ends: FloatArray, slopes: FloatArray, begin: int, first: int, last: int, merge: float) -> int:
     """Append the ends [first, last) to those from ``begin`` on, without neighbours that meet; returns the new end."""
     n = first
@@ -47,7 +47,7 @@ def _join(ends: FloatArray, slopes: FloatArray, begin: int, first: int, last: in
     return n
 
 
-@njit(cache=True, nogil=True)
+@njit
 def cell_u_lines(
     lines: FloatArray,
     window: tuple[float, float],
@@ -111,7 +111,7 @@ def cell_u_lines(
     return n
 
 
-@njit(cache=True, nogil=True)
+@njit
 def cell_v_lines(
     lines: FloatArray,
     window: tuple[float, float],
@@ -170,7 +170,7 @@ def cell_v_lines(
     return n
 
 
-@njit(cache=True, nogil=True)
+@njit
 def ring_lines(
     lines: FloatArray,
     fixed: int,
