@@ -25,12 +25,12 @@ import numpy as np
 from numba import njit
 
 from benchmarks.report import report
-from twin.cam.reach.reach import unmachinable
-from twin.cam.slices.cl_lines import Profiles, tip_heights, tip_lines
-from twin.cam.slices.element import StructuringElement
+from twin.cam.reach.reach import tool_reach
+from twin.cam.slices.cl_lines import Profiles, cl_heights, cl_lines
 from twin.cam.slices.offset import inflate
-from twin.cam.slices.polylines import Places
+from twin.cam.slices.polylines import Samples
 from twin.cam.slices.sections import slice_part
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.cam.surface.drop_cutter import DropCutter
 from twin.cam.surface.surface import Surface, surface_of_mesh
 from twin.tools.text import parse_tool
@@ -88,15 +88,15 @@ def write_torus(path: Path) -> None:
 def paths(profiles: Profiles, repeats: int) -> tuple[list[np.ndarray], Cost, Cost]:
     """The finishing path, and costs of roughing and finishing."""
     tool = StructuringElement.tool(parse_tool(TOOL))
-    places = Places.between(-HALF_MM, HALF_MM, PLACES_MM)
+    places = Samples.between(-HALF_MM, HALF_MM, PLACES_MM)
     rough = np.linspace(-HALF_MM, HALF_MM, 31)
 
     def layers() -> None:
         for k in range(5):
-            tip_lines(profiles, tool, rough, places, FLOOR_MM, allowance_mm=0.1 + 2.0 * k, chord_mm=0.01)
+            cl_lines(profiles, tool, rough, places, FLOOR_MM, allowance_mm=0.1 + 2.0 * k, chord_mm=0.01)
 
     roughing, _ = timed(layers, repeats)
-    finishing, lines = timed(lambda: tip_lines(profiles, tool, ROWS_MM, places, FLOOR_MM), repeats)
+    finishing, lines = timed(lambda: cl_lines(profiles, tool, ROWS_MM, places, FLOOR_MM), repeats)
     return lines, roughing, finishing
 
 
@@ -215,10 +215,10 @@ def height_map(surface: Surface, grid: float) -> dict[str, Any]:
 
 def heights_of_slices(mesh: Solid, pitch: float, grid: float) -> dict[str, Any]:
     """Heights at the same places from slices: slicing, heights, errors."""
-    places = Places.between(-HALF_MM, HALF_MM, grid)
+    places = Samples.between(-HALF_MM, HALF_MM, grid)
     tool = StructuringElement.tool(parse_tool(TOOL))
     prepared, profiles = timed(lambda: Profiles.of(slice_part(mesh, pitch).sections(1)))
-    cost, heights = timed(lambda: tip_heights(profiles, tool, ROWS_MM, places))
+    cost, heights = timed(lambda: cl_heights(profiles, tool, ROWS_MM, places))
     points = np.column_stack((np.tile(places.at_mm, len(ROWS_MM)), np.repeat(ROWS_MM, places.count)))
     return {
         "pitch_mm": pitch,
@@ -243,7 +243,7 @@ def polygons(stl: Path) -> dict[str, Any]:
     ball = StructuringElement.ball(RADIUS_MM)
     coarse, fine = slice_part(stl, 0.5), slice_part(stl, 0.1)
     inflated, _ = timed(lambda: inflate(coarse, ball), 1)
-    reached, reach = timed(lambda: unmachinable(fine, ball), 1)
+    reached, reach = timed(lambda: tool_reach(fine, ball), 1)
     return {
         "inflate_3_directions_0.5_mm": inflated.told(),
         "machinable_0.1_mm": reached.told(),

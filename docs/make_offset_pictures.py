@@ -15,10 +15,10 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 
 from twin.arrays import FloatArray
-from twin.cam.reach.reach import unmachinable
-from twin.cam.slices.element import StructuringElement
+from twin.cam.reach.reach import tool_reach
 from twin.cam.slices.offset import inflate, inflate_individually
 from twin.cam.slices.sections import SlicedPart, slice_part
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.cam.surface.drop_cutter import DropCutter
 from twin.cam.surface.surface import surface_of_mesh
 from twin.cli.show.reach_plot import write_plot
@@ -89,7 +89,7 @@ def main() -> None:
     top.legend(loc="lower center", ncols=4, fontsize=8)
     figure.savefig(PICTURES / "offset_directions.png", dpi=110)
     fine = slice_part(mesh, 0.1)
-    write_plot(PICTURES / "torus_machinable.png", fine, {"ball 8": unmachinable(fine, ball)})
+    write_plot(PICTURES / "torus_machinable.png", fine, {"ball 8": tool_reach(fine, ball)})
 
 
 if __name__ == "__main__":

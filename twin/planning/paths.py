@@ -13,19 +13,19 @@ from pathlib import Path
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cam.passes.contour import ContourOptions, LevelWay, contour_passes, level_heights, levels_of
+from twin.cam.passes.contour import ContourOptions, OutlineLinkPlanner, contour_passes, level_heights, levels_of
 from twin.cam.passes.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
 from twin.cam.path.arc_fit import FitOptions, Side, fit_path
-from twin.cam.path.linking import LinkOptions, Pass, Way, link
-from twin.cam.path.surface_links import SurfaceWay
+from twin.cam.path.linking import LinkOptions, LinkPlanner, Pass, link
+from twin.cam.path.surface_links import SurfaceLinkPlanner
 from twin.cam.path.to_nc import describe
 from twin.cam.path.toolpath import ToolPath
-from twin.cam.slices.cl_lines import Profiles, tip_lines
-from twin.cam.slices.element import StructuringElement
+from twin.cam.slices.cl_lines import Profiles, cl_lines
 from twin.cam.slices.offset import inflated_planes
-from twin.cam.slices.polylines import Places
+from twin.cam.slices.polylines import Samples
 from twin.cam.slices.sections import Sections, SlicedPart, cut_sections, slice_part
 from twin.cam.slices.steep_sections import with_steep_sections
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.cam.surface.drop_lines import drop_lines
 from twin.cam.surface.surface import Surface, surface_of_mesh
 from twin.errors import ToolPathError
@@ -42,7 +42,7 @@ Report = Callable[[str, float], None]
 _CHORD_PITCHES = 0.005
 #: Chords of rows stand no farther off the tip's true line; or this part of the allowance.
 _CHORD_MM, _CHORD_ALLOWANCE = 0.0005, 0.05
-#: Places that rows begin with are a slice pitch apart; no closer than this part of the radius of ball or corner arc,
+#: Samples that rows begin with are a slice pitch apart; no closer than this part of the radius of ball or corner arc,
 #: for the tool's own round hides what is finer, and places are added where chords would not do.
 _PLACES_APART = 0.0125
 #: Planes that are inflated between two reports.
@@ -158,15 +158,15 @@ def plan(settings: PathSettings, ground: Ground, report: Report = _quiet) -> Too
     return _fitted(made, settings)
 
 
-def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple[Pass, ...], Way]:
+def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple[Pass, ...], LinkPlanner]:
     """Rows of all layers, from the outermost to the part's own."""
     along, across = (0, 1) if settings.direction == "x" else (1, 0)
     low, high = ground.region_mm + ground.overhang_mm * np.array([[-1.0], [1.0]])
     at = row_positions(float(low[across]), float(high[across]), settings.stepover_mm)
     report("profiles", 0.0)
     apart = max(settings.pitch_mm, _PLACES_APART * ground.tool.corner_mm)
-    places = Places.between(float(low[along]), float(high[along]), apart)
-    way = SurfaceWay(
+    places = Samples.between(float(low[along]), float(high[along]), apart)
+    way = SurfaceLinkPlanner(
         lambda: _surface(ground.part.mesh),
         ground.tool,
         allowance_mm=settings.allowance_mm,
@@ -194,7 +194,7 @@ def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple
 
 
 def _rows(
-    settings: PathSettings, ground: Ground, way: SurfaceWay, at: FloatArray, places: Places
+    settings: PathSettings, ground: Ground, way: SurfaceLinkPlanner, at: FloatArray, places: Samples
 ) -> Callable[[float], list[FloatArray]]:
     """Makes the rows' lines from the material to be left: from slices, or from the triangles themselves."""
     chord = max(_CHORD_MM, _CHORD_ALLOWANCE * settings.allowance_mm)
@@ -205,7 +205,7 @@ def _rows(
         )
     profiles = Profiles.of(ground.sections)
     element = StructuringElement.tool(ground.tool)
-    return lambda left: tip_lines(
+    return lambda left: cl_lines(
         profiles, element, at, places, ground.floor_mm + left, allowance_mm=left, chord_mm=chord
     )
 
@@ -228,7 +228,7 @@ def _approach(
     )
 
 
-def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple[Pass, ...], Way]:
+def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple[Pass, ...], LinkPlanner]:
     top = float(ground.stock_mm[1, 2])
     heights = level_heights(ground.floor_mm + settings.allowance_mm, top, settings.axial_depth_mm)
     element = StructuringElement.tool(ground.tool).with_allowance(settings.allowance_mm)
@@ -247,7 +247,7 @@ def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tu
         climb=settings.climb,
         chord_mm=chord,
     )
-    return contour_passes(levels, options), LevelWay(levels, window, top)
+    return contour_passes(levels, options), OutlineLinkPlanner(levels, window, top)
 
 
 def _sections_with(ground: Ground, at: FloatArray) -> Sections:

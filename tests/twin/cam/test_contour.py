@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from twin.cam.passes.contour import ContourOptions, LevelWay, contour_passes, level_heights, levels_of
+from twin.cam.passes.contour import ContourOptions, OutlineLinkPlanner, contour_passes, level_heights, levels_of
 from twin.geometry.polygons.outline import box_area
 from twin.geometry.polygons.region import Region
 
@@ -38,7 +38,7 @@ def test_climb_has_the_part_on_its_right(climb: bool) -> None:
     levels = levels_of(np.array([-1.0]), [FRAME])
     passes = contour_passes(levels, options(climb=climb))
     areas = sorted(signed_area(p.points_mm) for p in passes)
-    # the outer outline clockwise and the pocket's counter-clockwise, or both the other way
+    # the outer outline clockwise and the pocket's counter-clockwise, or both the other way round
     assert areas == pytest.approx([-400.0, 100.0] if climb else [-100.0, 400.0])
 
 
@@ -83,11 +83,11 @@ def test_passes_that_begin_outside_the_stock_meet_no_material_there() -> None:
 
 def test_ways_stay_in_the_free_area() -> None:
     levels = levels_of(np.array([-1.0, -2.0]), [FRAME, FRAME])
-    way = LevelWay(levels, box_area((-30.0, -30.0), (30.0, 30.0)), 0.0)
-    assert way.between(np.array([-4.0, 0, -1]), np.array([4.0, 0, -1])) is not None
-    assert way.between(np.array([0.0, 0, -1]), np.array([15.0, 0, -1])) is None
-    down = way.between(np.array([-4.0, 0, -1]), np.array([4.0, 0, -2]))
+    planner = OutlineLinkPlanner(levels, box_area((-30.0, -30.0), (30.0, 30.0)), 0.0)
+    assert planner.between(np.array([-4.0, 0, -1]), np.array([4.0, 0, -1])) is not None
+    assert planner.between(np.array([0.0, 0, -1]), np.array([15.0, 0, -1])) is None
+    down = planner.between(np.array([-4.0, 0, -1]), np.array([4.0, 0, -2]))
     assert down is not None and down.tolist() == [[-4, 0, -1], [4, 0, -1], [4, 0, -2]]
-    assert way.between(np.array([-4.0, 0, -2]), np.array([4.0, 0, -1])) is None
-    assert not way.free(np.array([(0.0, 0.0, -1.5), (1.0, 0.0, -1.5)]))
-    assert way.clear_z_mm(np.zeros(3), np.zeros(3)) == 0.0
+    assert planner.between(np.array([-4.0, 0, -2]), np.array([4.0, 0, -1])) is None
+    assert not planner.free(np.array([(0.0, 0.0, -1.5), (1.0, 0.0, -1.5)]))
+    assert planner.clear_z_mm(np.zeros(3), np.zeros(3)) == 0.0

@@ -13,8 +13,8 @@ from twin.tools.shape import tool_shape
 TOOL = tool_shape("flat", 6.0, 20.0)
 
 
-class Room:
-    """All free, or nothing; ways straight."""
+class FakePlanner:
+    """All free, or nothing; links straight."""
 
     def __init__(self, free: bool = True) -> None:
         self._free = free
@@ -47,7 +47,7 @@ def test_a_plunge_begins_at_clearance_above_the_material() -> None:
 @pytest.mark.parametrize("entry", ["ramp", "helix"])
 def test_ramps_and_helices_keep_their_angle_and_end_at_the_start(entry: str) -> None:
     options = LinkOptions(safe_z_mm=10.0, entry=entry, ramp_deg=5.0, helix_mm=2.0)  # type: ignore[arg-type]
-    moves = link([row(0.0)], options, Room())
+    moves = link([row(0.0)], options, FakePlanner())
     assert kinds(moves) == ["rapid", "plunge", entry, "cut", "rapid"]
     down = moves[2]
     assert down.start_mm[2] == 0.0 and down.end_mm.tolist() == [0.0, 0.0, -2.0]
@@ -57,7 +57,7 @@ def test_ramps_and_helices_keep_their_angle_and_end_at_the_start(entry: str) -> 
 
 
 def test_a_helix_that_finds_no_room_becomes_a_ramp() -> None:
-    moves = link([row(0.0)], LinkOptions(safe_z_mm=10.0, entry="helix"), Room(free=False))
+    moves = link([row(0.0)], LinkOptions(safe_z_mm=10.0, entry="helix"), FakePlanner(free=False))
     assert kinds(moves)[2] == "ramp"
 
 
@@ -75,7 +75,7 @@ def test_a_closed_pass_is_ramped_along_and_then_cut_whole() -> None:
 
 def test_neighbouring_passes_are_linked_along_the_surface_within_reach() -> None:
     passes = [row(0.0), Pass(points_mm=np.array([(40.0, 1.0, -2.0), (0.0, 1.0, -2.0)])), row(5.0)]
-    moves = link(passes, LinkOptions(safe_z_mm=10.0, stay_down_mm=2.0, link_mm_min=900.0), Room())
+    moves = link(passes, LinkOptions(safe_z_mm=10.0, stay_down_mm=2.0, link_mm_min=900.0), FakePlanner())
     assert kinds(moves) == [
         "rapid",
         "plunge",
@@ -94,18 +94,18 @@ def test_neighbouring_passes_are_linked_along_the_surface_within_reach() -> None
 
 def test_layers_are_never_linked_along_the_surface() -> None:
     passes = [row(0.0), Pass(points_mm=np.array([(40.0, 1.0, -2.0), (0.0, 1.0, -2.0)]), layer=1)]
-    moves = link(passes, LinkOptions(safe_z_mm=10.0, stay_down_mm=2.0), Room())
+    moves = link(passes, LinkOptions(safe_z_mm=10.0, stay_down_mm=2.0), FakePlanner())
     assert "link" not in kinds(moves)
 
 
 def test_low_links_stay_at_clearance_above_what_is_left() -> None:
-    moves = link([row(0.0), row(5.0)], LinkOptions(safe_z_mm=10.0, low_links=True), Room())
+    moves = link([row(0.0), row(5.0)], LinkOptions(safe_z_mm=10.0, low_links=True), FakePlanner())
     between = [m for m in moves[3:-1] if m.rapid]
     assert max(m.points_mm[:, 2].max() for m in between) == 2.0
 
 
 def test_leads_are_tangent_quarter_circles() -> None:
-    moves = link([row(0.0, top=None)], LinkOptions(safe_z_mm=10.0, lead_mm=3.0, lead_mm_min=300.0), Room())
+    moves = link([row(0.0, top=None)], LinkOptions(safe_z_mm=10.0, lead_mm=3.0, lead_mm_min=300.0), FakePlanner())
     assert kinds(moves) == ["rapid", "plunge", "lead", "cut", "lead", "rapid"]
     lead = moves[2]
     assert lead.feed_mm_min == 300.0

@@ -9,9 +9,9 @@ import pytest
 import shapely
 from support import solids
 
-from twin.cam.slices.element import StructuringElement
 from twin.cam.slices.offset import bound_mm, inflate, inflate_individually, shrink
 from twin.cam.slices.sections import SlicedPart, slice_part
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.errors import ToolError
 from twin.geometry.polygons import convolution
 from twin.geometry.polygons.region import Region

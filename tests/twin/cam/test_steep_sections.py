@@ -10,11 +10,11 @@ from support import solids
 from support.small_parts import box, prism
 
 from twin.arrays import FloatArray
-from twin.cam.slices.cl_lines import Profiles, tip_heights
-from twin.cam.slices.element import StructuringElement
-from twin.cam.slices.polylines import Places
+from twin.cam.slices.cl_lines import Profiles, cl_heights
+from twin.cam.slices.polylines import Samples
 from twin.cam.slices.sections import Sections, SlicedPart, slice_part
 from twin.cam.slices.steep_sections import with_steep_sections
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.cam.surface.drop_cutter import DropCutter
 from twin.planning.accuracy import sag_mm
 from twin.tools.text import parse_tool
@@ -32,7 +32,7 @@ def gouge_mm(part: SlicedPart, sections: Sections, text: str) -> float:
     """How far into the wall tips on rows along it are at most, square to the wall."""
     rows = np.arange(3.0, 8.0, 0.037)
     tool = StructuringElement.tool(parse_tool(text))
-    heights = tip_heights(Profiles.of(sections), tool, rows, Places.between(2.0, 4.0, 1.0))[:, 0]
+    heights = cl_heights(Profiles.of(sections), tool, rows, Samples.between(2.0, 4.0, 1.0))[:, 0]
     cutter = DropCutter(part.mesh.vertices_mm[part.mesh.triangles], text)
 
     def exact(x: FloatArray) -> FloatArray:

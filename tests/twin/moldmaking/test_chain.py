@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from twin.arrays import FloatArray
-from twin.cam.passes.free_area import level_rooms
+from twin.cam.passes.free_area import level_free_areas
 from twin.cam.passes.pockets import subdivided
-from twin.cam.passes.roughing import LevelWay, contour_roughing, roughing_levels
+from twin.cam.passes.roughing import LevelLinkPlanner, contour_roughing, roughing_levels
 from twin.cam.path.machining_time import machining_time
 from twin.cam.path.toolpath import MoveKind, ToolPath
 from twin.cam.stock.dexel import Dexels
@@ -139,16 +139,16 @@ def test_rapids_touch_no_stock(chain: MoldChain) -> None:
         assert rapids_in_stock_mm(path, before) < 1e-6
 
 
-def test_links_stay_in_the_room_of_their_level(chain: MoldChain) -> None:
+def test_links_stay_in_the_free_area_of_their_level(chain: MoldChain) -> None:
     tool, options = chain.rough.path.tool, chain.roughing_options
     levels = roughing_levels(chain.space, options)
-    rooms = level_rooms(
+    free_areas = level_free_areas(
         chain.part, tool, levels, options.allowance_mm, chain.space.window(tool.max_radius_mm + options.allowance_mm)
     )
-    way = LevelWay(levels, rooms, chain.space.top_mm)
+    planner = LevelLinkPlanner(levels, free_areas, chain.space.top_mm)
     links = list(chain.rough.path.of_kind(MoveKind.LINK))
     assert links
-    assert all(way.free(m.points_mm) for m in links)
+    assert all(planner.free(m.points_mm) for m in links)
 
 
 def test_equal_jobs_give_equal_paths(chain: MoldChain) -> None:

@@ -168,8 +168,8 @@ def _outside(point: FloatArray, stock: Area) -> bool:
     return not holds(stock, np.array([point, point]))
 
 
-class LevelWay:
-    """The room beside the outlines, see `twin.cam.path.linking.Way`.
+class OutlineLinkPlanner:
+    """The room beside the outlines, see `twin.cam.path.linking.LinkPlanner`.
 
     Args:
         levels: from the highest to the lowest.

@@ -231,8 +231,8 @@ def in_order(
             yield Pass(points_mm=run, top_mm=top if top > run[0, 2] else None)
 
 
-class RowWay:
-    """Ways over the part between rows, see `twin.cam.path.linking.Way`.
+class RowLinkPlanner:
+    """Ways over the part between rows, see `twin.cam.path.linking.LinkPlanner`.
 
     Args:
         cutter: the finishing tool over the part.
@@ -304,7 +304,7 @@ def finishing(
         low_links=True,
         entry="plunge",
     )
-    moves = link(passes, linking, RowWay(cutter, stock, 0.5 * options.stepover_mm)) if passes else ()
+    moves = link(passes, linking, RowLinkPlanner(cutter, stock, 0.5 * options.stepover_mm)) if passes else ()
     path = ToolPath(moves=moves, tool=cutter.tool, name=_name(options))
     share = (1.0 - _SHARE) * options.chord_mm
     return fit_path(path, FitOptions(tolerance_mm=share, gouge_mm=share, material="below"))

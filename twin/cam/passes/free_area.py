@@ -19,7 +19,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.geometry.mesh.slicing import MeshEdges, mesh_sections
-from twin.geometry.polygons.free_area import Room, simplified, united
+from twin.geometry.polygons.free_area import FreeArea, simplified, united
 from twin.geometry.polygons.outline import Area, grown, minus
 from twin.geometry.polygons.shapes import to_shape
 from twin.tools.shape import ToolShape
@@ -49,10 +49,10 @@ def _height_at(tool: ToolShape, radius_mm: float) -> float:
     return tool.arc_height_mm + (radius_mm - tool.arc_radius_mm) / math.tan(tool.taper_rad)
 
 
-def level_rooms(
+def level_free_areas(
     part: Solid, tool: ToolShape, levels_mm: Sequence[float], allowance_mm: float, window: Area
-) -> tuple[Room, ...]:
-    """The room of a tool's axis at each level.
+) -> tuple[FreeArea, ...]:
+    """The free area of a tool's axis at each level.
 
     Args:
         levels_mm: heights of the tip, decreasing.
@@ -65,15 +65,15 @@ def level_rooms(
     wanted = np.array([[max(z - allowance_mm + h, low + 1e-4) for h, _ in steps] for z in levels_mm])
     sections = _sections(part, part.edges, np.unique(wanted))
     above: Area = united([])
-    rooms: list[Room] = []
+    free_areas: list[FreeArea] = []
     for row in wanted.tolist():
         parts = [
             grown(sections[z], r + allowance_mm + 0.5 * CHORD_MM, 0.5 * CHORD_MM)
             for z, (_, r) in zip(row, steps, strict=True)
         ]
         above = simplified(united([above, *(grown(p, 0.0, CHORD_MM) for p in parts)]), 1e-4)
-        rooms.append(Room(minus(window, above)))
-    return tuple(rooms)
+        free_areas.append(FreeArea(minus(window, above)))
+    return tuple(free_areas)
 
 
 def _sections(part: Solid, edges: MeshEdges, planes_mm: FloatArray) -> dict[float, Area]:

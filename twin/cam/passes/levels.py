@@ -1,4 +1,4 @@
-"""Lines of a level that cut something: rings or rows of a room, without what would run through air.
+"""Lines of a level that cut something: rings or rows of a free area, without what would run through air.
 
 Lines are taken one after another. Where the tool would cut less than a least depth it is left out; what a line cuts is
 taken from the stock before the next one is looked at. So each place is cut once.
@@ -18,7 +18,7 @@ from twin.cam.slices import run_kernels as kernels
 from twin.cam.stock.dexel import Dexels
 from twin.cam.stock.rest import stock_heights
 from twin.cam.stock.strokes import Strokes
-from twin.geometry.polygons.free_area import Room, borders, rows_of, shrunk
+from twin.geometry.polygons.free_area import FreeArea, borders, rows_of, shrunk
 from twin.geometry.polygons.outline import pieces
 from twin.tools.shape import ToolShape
 
@@ -58,17 +58,17 @@ class Cut:
         return bool(np.all(self.points_mm[0] == self.points_mm[-1]))
 
 
-def ring_layers(room: Room, radial_depth_mm: float) -> Iterator[list[FloatArray]]:
-    """The borders of a room, then those further in, until nothing is left."""
-    areas = pieces(room.area)
+def ring_layers(free_area: FreeArea, radial_depth_mm: float) -> Iterator[list[FloatArray]]:
+    """The borders of a free area, then those further in, until nothing is left."""
+    areas = pieces(free_area.area)
     while areas:
         yield [line for area in areas for line in borders(area)]
         areas = [inner for area in areas for inner in shrunk(area, radial_depth_mm, CHORD_MM)]
 
 
-def row_layers(room: Room, radial_depth_mm: float) -> Iterator[list[FloatArray]]:
+def row_layers(free_area: FreeArea, radial_depth_mm: float) -> Iterator[list[FloatArray]]:
     """Parallel lines along x, one row a layer, those of a row from left to right."""
-    yield from rows_of(room, radial_depth_mm)
+    yield from rows_of(free_area, radial_depth_mm)
 
 
 def cuts_of(

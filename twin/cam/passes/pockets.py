@@ -1,7 +1,7 @@
 """Pockets of all levels as trees, and the rings that clear one of them.
 
-A level's room falls into parts, here pockets; each lies below one of the level above. A pocket is cleared with all that
-lies under it before the next one beside it is begun, so the tool does not travel between them level by level.
+The free area of a level falls into parts, here pockets; each lies below one of the level above. A pocket is cleared
+with all that lies under it before the next one is begun, so the tool does not travel between them level by level.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import numpy as np
 
 from twin.arrays import FloatArray, places_in_runs
 from twin.cam.passes.free_area import CHORD_MM
-from twin.geometry.polygons.free_area import Room, a_point_of, borders, has_point, shrunk, size_of
+from twin.geometry.polygons.free_area import FreeArea, a_point_of, borders, has_point, shrunk, size_of
 from twin.geometry.polygons.outline import Area, pieces
 
 
 @dataclass(slots=True, eq=False)
 class Pocket:
-    """One part of a level's room.
+    """One part of a level's free area.
 
     Attributes:
         level: number of the level, from the top.
@@ -32,7 +32,7 @@ class Pocket:
     below: list[Pocket] = field(default_factory=list)
 
 
-def pocket_forest(rooms: Sequence[Room], least_mm2: float) -> list[Pocket]:
+def pocket_forest(free_areas: Sequence[FreeArea], least_mm2: float) -> list[Pocket]:
     """The pockets of the first level in which each stands, with those below.
 
     Args:
@@ -40,8 +40,8 @@ def pocket_forest(rooms: Sequence[Room], least_mm2: float) -> list[Pocket]:
     """
     tops: list[Pocket] = []
     last: list[Pocket] = []
-    for number, room in enumerate(rooms):
-        here = [Pocket(number, p) for p in pieces(room.area) if size_of(p) >= least_mm2]
+    for number, free_area in enumerate(free_areas):
+        here = [Pocket(number, p) for p in pieces(free_area.area) if size_of(p) >= least_mm2]
         for pocket in here:
             point = a_point_of(pocket.area)
             parent = next((p for p in last if has_point(p.area, point)), None)

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from twin.cam.passes.free_area import level_rooms
+from twin.cam.passes.free_area import level_free_areas
 from twin.cam.passes.levels import CutOptions, cuts_of, row_layers
 from twin.cam.passes.roughing import FIT, RoughingOptions, Workspace, roughing_levels
-from twin.cam.passes.semi_finishing import LevelCuts, Report, StockWay
+from twin.cam.passes.semi_finishing import LevelCuts, Report, StockLinkPlanner
 from twin.cam.path.arc_fit import fit_path
 from twin.cam.path.linking import LinkOptions, Pass, link
 from twin.cam.path.toolpath import ToolPath
@@ -32,15 +32,15 @@ def row_cuts(
 ) -> list[LevelCuts]:
     """What of the levels' rows cuts, from the top; the stock is lowered by it."""
     levels = roughing_levels(space, options)
-    rooms = level_rooms(space.part, tool, levels, options.allowance_mm, space.window(tool.max_radius_mm))
+    free_areas = level_free_areas(space.part, tool, levels, options.allowance_mm, space.window(tool.max_radius_mm))
     cutting = CutOptions(
         least_mm=least_mm, resolution_mm=options.resolution_mm, bridge_mm=2.0 * options.radial_depth_mm
     )
     found: list[LevelCuts] = []
-    for number, (z, room) in enumerate(zip(levels, rooms, strict=True)):
-        cuts = tuple(cuts_of(row_layers(room, options.radial_depth_mm), z, tool, stock, cutting))
+    for number, (z, free_area) in enumerate(zip(levels, free_areas, strict=True)):
+        cuts = tuple(cuts_of(row_layers(free_area, options.radial_depth_mm), z, tool, stock, cutting))
         if cuts:
-            found.append(LevelCuts(z, room, cuts))
+            found.append(LevelCuts(z, free_area, cuts))
         if report is not None:
             report(number + 1, len(levels))
     return found
@@ -91,5 +91,5 @@ def scanned(
         entry="plunge",
     )
     passes = list(row_passes(levels, one_way=one_way))
-    moves = link(passes, linking, StockWay(levels, space.top_mm, before, tool)) if passes else ()
+    moves = link(passes, linking, StockLinkPlanner(levels, space.top_mm, before, tool)) if passes else ()
     return fit_path(ToolPath(moves=moves, tool=tool, name="scanning rows"), FIT)

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cam.passes.free_area import CHORD_MM, level_rooms
+from twin.cam.passes.free_area import CHORD_MM, level_free_areas
 from twin.cam.passes.pockets import clearing_rings, in_depth, pocket_forest, subdivided
 from twin.cam.path.arc_fit import FitOptions, fit_path
 from twin.cam.path.linking import LinkOptions, Pass, link
 from twin.cam.path.toolpath import ToolPath
-from twin.geometry.polygons.free_area import Room, borders
+from twin.geometry.polygons.free_area import FreeArea, borders
 from twin.geometry.polygons.outline import Area, box_area, grown
 from twin.tools.shape import ToolShape
 from twin.workpiece.from_mesh import Solid
@@ -94,18 +94,18 @@ class RoughingOptions:
     feeds: StageFeeds
 
 
-class LevelWay:
-    """The room of all levels, see `twin.cam.path.linking.Way`.
+class LevelLinkPlanner:
+    """The free area of all levels, see `twin.cam.path.linking.LinkPlanner`.
 
     Args:
         levels_mm: decreasing.
-        rooms: of the levels.
+        free_areas: of the levels.
         top_mm: the stock's top.
     """
 
-    def __init__(self, levels_mm: Sequence[float], rooms: Sequence[Room], top_mm: float) -> None:
+    def __init__(self, levels_mm: Sequence[float], free_areas: Sequence[FreeArea], top_mm: float) -> None:
         self._levels = [round(z, 9) for z in levels_mm]
-        self._rooms = dict(zip(self._levels, rooms, strict=True))
+        self._free_areas = dict(zip(self._levels, free_areas, strict=True))
         self._top_mm = top_mm
 
     def between(self, start_mm: FloatArray, end_mm: FloatArray) -> FloatArray | None:
@@ -114,16 +114,16 @@ class LevelWay:
         return line if start_mm[2] == end_mm[2] and self.free(line) else None
 
     def free(self, points_mm: FloatArray) -> bool:
-        """Whether a level line lies in its level's room; False at other heights."""
-        room = self._rooms.get(round(float(points_mm[0, 2]), 9))
-        return room is not None and room.holds(points_mm[:, :2])
+        """Whether a level line lies in its level's free area; False at other heights."""
+        free_area = self._free_areas.get(round(float(points_mm[0, 2]), 9))
+        return free_area is not None and free_area.holds(points_mm[:, :2])
 
     def clear_z_mm(self, start_mm: FloatArray, end_mm: FloatArray) -> float:
-        """The lowest level above the start whose room holds the way: it was cleared before."""
+        """The lowest level above the start whose free area holds the way: it was cleared before."""
         line = np.array([start_mm[:2], end_mm[:2]])
         low = max(float(start_mm[2]), min(self._levels)) + 1e-9
         for z in reversed(self._levels):
-            if z > low and self._rooms[z].holds(line):
+            if z > low and self._free_areas[z].holds(line):
                 return z
         return self._top_mm
 
@@ -141,11 +141,11 @@ def contour_roughing(space: Workspace, tool: ToolShape, options: RoughingOptions
     Args:
         drop: exact heights of the tip on the part; points below them, as over undercuts, are lifted.
     """
-    radius, levels = tool.max_radius_mm, roughing_levels(space, options)
-    rooms = level_rooms(space.part, tool, levels, options.allowance_mm, space.window(radius + options.allowance_mm))
-    used = sum(1 for room in rooms if not room.empty)
-    levels, rooms = levels[:used], rooms[:used]
-    passes = list(_passes(space, tool, options, levels, rooms))
+    levels, window = roughing_levels(space, options), space.window(tool.max_radius_mm + options.allowance_mm)
+    free_areas = level_free_areas(space.part, tool, levels, options.allowance_mm, window)
+    used = sum(1 for free_area in free_areas if not free_area.empty)
+    levels, free_areas = levels[:used], free_areas[:used]
+    passes = list(_passes(space, tool, options, levels, free_areas))
     if drop is not None:
         passes = lifted(passes, drop, options.allowance_mm, options.resolution_mm)
     linking = LinkOptions(
@@ -160,18 +160,18 @@ def contour_roughing(space: Workspace, tool: ToolShape, options: RoughingOptions
         ramp_deg=options.ramp_deg,
         helix_mm=0.5 * tool.nominal_radius_mm,
     )
-    moves = link(passes, linking, LevelWay(levels, rooms, space.top_mm)) if passes else ()
+    moves = link(passes, linking, LevelLinkPlanner(levels, free_areas, space.top_mm)) if passes else ()
     return fit_path(ToolPath(moves=moves, tool=tool, name="contour roughing"), FIT)
 
 
 def _passes(
-    space: Workspace, tool: ToolShape, options: RoughingOptions, levels: Sequence[float], rooms: Sequence[Room]
+    space: Workspace, tool: ToolShape, options: RoughingOptions, levels: Sequence[float], free_areas: Sequence[FreeArea]
 ) -> Iterator[Pass]:
     least = math.pi * (_LEAST_RADIUS * tool.max_radius_mm) ** 2
-    stock = Room(space.window(0.0))
-    touching = Room(grown(space.window(0.0), tool.max_radius_mm - _BESIDE_MM, CHORD_MM))
+    stock = FreeArea(space.window(0.0))
+    touching = FreeArea(grown(space.window(0.0), tool.max_radius_mm - _BESIDE_MM, CHORD_MM))
     at = space.low_mm[:2]
-    for number, pocket in enumerate(in_depth(pocket_forest(rooms, least), at)):
+    for number, pocket in enumerate(in_depth(pocket_forest(free_areas, least), at)):
         closed = stock.holds(next(borders(pocket.area)))
         top = levels[pocket.level - 1] if pocket.level else space.top_mm
         for ring in clearing_rings(pocket.area, options.radial_depth_mm, at, outwards=closed):
@@ -182,7 +182,7 @@ def _passes(
                 yield Pass(points_mm=points, top_mm=None if outside else top, layer=number)
 
 
-def _in_stock(ring: FloatArray, touching: Room, resolution_mm: float) -> Iterator[FloatArray]:
+def _in_stock(ring: FloatArray, touching: FreeArea, resolution_mm: float) -> Iterator[FloatArray]:
     """What of a ring touches the stock, with a step outside of it at both ends; the whole ring where all of it does."""
     if touching.holds(ring):
         yield ring

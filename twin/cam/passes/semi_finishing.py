@@ -15,9 +15,9 @@ from typing import Literal
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cam.passes.free_area import level_rooms
+from twin.cam.passes.free_area import level_free_areas
 from twin.cam.passes.levels import Cut, CutOptions, cuts_of, ring_layers
-from twin.cam.passes.roughing import FIT, LevelWay, RoughingOptions, StageFeeds, Workspace, roughing_levels
+from twin.cam.passes.roughing import FIT, LevelLinkPlanner, RoughingOptions, StageFeeds, Workspace, roughing_levels
 from twin.cam.path.arc_fit import fit_path
 from twin.cam.path.linking import LinkOptions, Pass, link
 from twin.cam.path.machining_time import Dynamics
@@ -25,7 +25,7 @@ from twin.cam.path.toolpath import ToolPath
 from twin.cam.path.tour import ClearGrid, LinkSpeeds, Search, order_pieces
 from twin.cam.stock.dexel import Dexels
 from twin.cam.stock.rest import stock_heights
-from twin.geometry.polygons.free_area import Room
+from twin.geometry.polygons.free_area import FreeArea
 from twin.tools.shape import ToolShape
 
 #: Told after each of so many steps: done and all.
@@ -83,17 +83,17 @@ class LevelCuts:
 
     Attributes:
         z_mm: height of the tip.
-        room: of the tool's axis.
+        free_area: of the tool's axis.
         cuts: without order.
     """
 
     z_mm: float
-    room: Room
+    free_area: FreeArea
     cuts: tuple[Cut, ...]
 
 
-class StockWay(LevelWay):
-    """The room of all levels, and what stands over it; see `twin.cam.path.linking.Way`.
+class StockLinkPlanner(LevelLinkPlanner):
+    """The free area of all levels, and what stands over it; see `twin.cam.path.linking.LinkPlanner`.
 
     Args:
         stock: before the stage.
@@ -101,7 +101,7 @@ class StockWay(LevelWay):
     """
 
     def __init__(self, levels: Sequence[LevelCuts], top_mm: float, stock: Dexels, tool: ToolShape) -> None:
-        super().__init__([one.z_mm for one in levels], [one.room for one in levels], top_mm)
+        super().__init__([one.z_mm for one in levels], [one.free_area for one in levels], top_mm)
         self._stock, self._tool = stock, tool
 
     def clear_z_mm(self, start_mm: FloatArray, end_mm: FloatArray) -> float:
@@ -119,14 +119,14 @@ def remaining_cuts(
     """What of the levels' contours cuts, from the top; the stock is lowered by it."""
     levels = roughing_levels(space, options.levels)
     window = space.window(tool.max_radius_mm)
-    rooms = level_rooms(space.part, tool, levels, options.allowance_mm, window)
+    free_areas = level_free_areas(space.part, tool, levels, options.allowance_mm, window)
     found: list[LevelCuts] = []
-    for number, (z, room) in enumerate(zip(levels, rooms, strict=True)):
-        if room.empty:
+    for number, (z, free_area) in enumerate(zip(levels, free_areas, strict=True)):
+        if free_area.empty:
             continue
-        cuts = tuple(cuts_of(ring_layers(room, options.radial_depth_mm), z, tool, stock, options.cutting))
+        cuts = tuple(cuts_of(ring_layers(free_area, options.radial_depth_mm), z, tool, stock, options.cutting))
         if cuts:
-            found.append(LevelCuts(z, room, cuts))
+            found.append(LevelCuts(z, free_area, cuts))
         if report is not None:
             report(number + 1, len(levels))
     return found
@@ -146,7 +146,7 @@ def ordered_passes(
             link_speeds(options.feeds, dynamics),
             lift_s=lift_s(space, one.z_mm, options.feeds, dynamics),
             start_lift_s=lift_s(space, one.z_mm, options.feeds, dynamics),
-            clear=clear_grid(one.room, space),
+            clear=clear_grid(one.free_area, space),
             two_way=options.direction == "both",
             search=options.search,
         )
@@ -177,17 +177,22 @@ def lift_s(space: Workspace, z_mm: float, feeds: StageFeeds, dynamics: Dynamics)
     return up + 0.5 * space.clearance_mm / (feeds.plunge / 60.0)
 
 
-def clear_grid(room: Room, space: Workspace) -> ClearGrid:
-    """A map of a room."""
+def clear_grid(free_area: FreeArea, space: Workspace) -> ClearGrid:
+    """A map of a free area."""
     low, high = space.low_mm[:2] - 1.0, space.high_mm[:2] + 1.0
     x, y = (np.arange(low[i], high[i] + _MAP_PITCH_MM, _MAP_PITCH_MM) for i in (0, 1))
     gx, gy = np.meshgrid(x, y, indexing="ij")
-    inside = room.holds_points(np.column_stack((gx.ravel(), gy.ravel())))
+    inside = free_area.holds_points(np.column_stack((gx.ravel(), gy.ravel())))
     return ClearGrid.of(np.asarray(inside, dtype=bool).reshape(gx.shape), low, _MAP_PITCH_MM)
 
 
 def linked(
-    passes: Sequence[Pass], space: Workspace, tool: ToolShape, feeds: StageFeeds, way: LevelWay, stay_down_mm: float
+    passes: Sequence[Pass],
+    space: Workspace,
+    tool: ToolShape,
+    feeds: StageFeeds,
+    planner: LevelLinkPlanner,
+    stay_down_mm: float,
 ) -> ToolPath:
     """Passes as one path: straight down into a cut with a round tool, along a ramp with a flat one."""
     linking = LinkOptions(
@@ -200,7 +205,7 @@ def linked(
         low_links=True,
         entry="plunge" if tool.corner_mm >= 0.5 * tool.nominal_radius_mm else "ramp",
     )
-    moves = link(passes, linking, way) if passes else ()
+    moves = link(passes, linking, planner) if passes else ()
     return fit_path(ToolPath(moves=moves, tool=tool, name="semi-finishing"), FIT)
 
 
@@ -219,4 +224,4 @@ def semi_finishing(
         before: the stock as the stage finds it.
     """
     passes = list(ordered_passes(levels, space, options, dynamics))
-    return linked(passes, space, tool, options.feeds, StockWay(levels, space.top_mm, before, tool), math.inf)
+    return linked(passes, space, tool, options.feeds, StockLinkPlanner(levels, space.top_mm, before, tool), math.inf)

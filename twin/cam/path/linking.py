@@ -2,8 +2,8 @@
 
 Ways between passes, the first that is allowed and possible is taken:
 
-1. along the surface (or inside an area that is cleared), at the link feed, where the way is no longer than
-   ``stay_down_mm`` and `Way` knows one;
+1. along the surface (or inside an area that is cleared), at the link feed, where the planner is no longer than
+   ``stay_down_mm`` and `LinkPlanner` knows one;
 2. at a clearance above what is left (``low_links``);
 3. up to the safe height, across and down, at the rapid rate.
 
@@ -55,7 +55,7 @@ class Pass:
         return len(self.points_mm) > 2 and bool(np.all(self.points_mm[0] == self.points_mm[-1]))
 
 
-class Way(Protocol):
+class LinkPlanner(Protocol):
     """What is known of the room around the passes; tips are places of the tool's tip."""
 
     def between(self, start_mm: FloatArray, end_mm: FloatArray) -> FloatArray | None:
@@ -120,11 +120,11 @@ class LinkOptions:
         )
 
 
-def link(passes: Sequence[Pass], options: LinkOptions, way: Way | None = None) -> tuple[Move, ...]:
+def link(passes: Sequence[Pass], options: LinkOptions, planner: LinkPlanner | None = None) -> tuple[Move, ...]:
     """One chain of moves through all passes in their order, from the safe height and back to it.
 
     Args:
-        way: what is known of the part; without it passes are joined at the safe height, leads and helices are made
+        planner: what is known of the part; without it passes are joined at the safe height, leads and helices are made
             without a check.
 
     Raises:
@@ -138,7 +138,7 @@ def link(passes: Sequence[Pass], options: LinkOptions, way: Way | None = None) -
     moves: list[Move] = []
     before: Pass | None = None
     for one in passes:
-        moves += _one_pass(moves, before, one, options, way)
+        moves += _one_pass(moves, before, one, options, planner)
         before = one
     if moves:
         end = moves[-1].end_mm
@@ -147,33 +147,33 @@ def link(passes: Sequence[Pass], options: LinkOptions, way: Way | None = None) -
 
 
 def _one_pass(
-    moves: Sequence[Move], before: Pass | None, one: Pass, options: LinkOptions, way: Way | None
+    moves: Sequence[Move], before: Pass | None, one: Pass, options: LinkOptions, planner: LinkPlanner | None
 ) -> Iterator[Move]:
     """The moves from the end of those before to the end of one more pass."""
     if before is not None and before.layer == one.layer:
-        points = _down(moves, before, one, options, way)
+        points = _down(moves, before, one, options, planner)
         if points is not None:
             if len(points) > 1:
                 feed = options.link_mm_min or options.feed_mm_min
                 yield Move(kind=MoveKind.LINK, points_mm=points, feed_mm_min=feed)
             yield Move(kind=MoveKind.CUT, points_mm=one.points_mm, feed_mm_min=options.feed_mm_min)
             return
-    way_in, points = _way_in(one, options, way)
-    yield from _over(moves, way_in[0].start_mm if way_in else points[0], options, way)
+    way_in, points = _way_in(one, options, planner)
+    yield from _over(moves, way_in[0].start_mm if way_in else points[0], options, planner)
     yield from way_in
     yield Move(kind=MoveKind.CUT, points_mm=points, feed_mm_min=options.feed_mm_min)
-    out = lead_out(points, options.entries, way.free if way else None)
+    out = lead_out(points, options.entries, planner.free if planner else None)
     if out is not None:
         yield out
 
 
-def _way_in(one: Pass, options: LinkOptions, way: Way | None) -> tuple[list[Move], FloatArray]:
+def _way_in(one: Pass, options: LinkOptions, planner: LinkPlanner | None) -> tuple[list[Move], FloatArray]:
     """From where rapids end to a pass: from the side through air, by a lead, or down through the material.
 
     Returns:
         The moves, and the pass's points, see `twin.cam.path.entries.entry_moves`.
     """
-    free = way.free if way else None
+    free = planner.free if planner else None
     points, top = one.points_mm, one.top_mm
     lead = lead_in(points, options.entries, free)
     if one.approach_mm is not None and lead is None:
@@ -189,9 +189,11 @@ def _way_in(one: Pass, options: LinkOptions, way: Way | None) -> tuple[list[Move
     return ([down, lead] if begin[2] > start[2] else [lead]), points
 
 
-def _down(moves: Sequence[Move], before: Pass, one: Pass, options: LinkOptions, way: Way | None) -> FloatArray | None:
+def _down(
+    moves: Sequence[Move], before: Pass, one: Pass, options: LinkOptions, planner: LinkPlanner | None
+) -> FloatArray | None:
     """The way along the surface to the next pass, of one point where it begins at the last one's end."""
-    if way is None or options.stay_down_mm <= 0.0 or options.lead_mm > 0.0:
+    if planner is None or options.stay_down_mm <= 0.0 or options.lead_mm > 0.0:
         return None
     end, start = before.points_mm[-1], one.points_mm[0]
     if np.any(moves[-1].end_mm != end) or np.linalg.norm(start - end) > options.stay_down_mm:
@@ -199,17 +201,19 @@ def _down(moves: Sequence[Move], before: Pass, one: Pass, options: LinkOptions, 
     if np.all(start == end):
         here: FloatArray = one.points_mm[:1]
         return here
-    points = way.between(end, start)
+    points = planner.between(end, start)
     if points is None or np.linalg.norm(np.diff(points, axis=0), axis=1).sum() > options.stay_down_mm:
         return None
     return points
 
 
-def _over(moves: Sequence[Move], begin: FloatArray, options: LinkOptions, way: Way | None) -> tuple[Move, ...]:
+def _over(
+    moves: Sequence[Move], begin: FloatArray, options: LinkOptions, planner: LinkPlanner | None
+) -> tuple[Move, ...]:
     """Rapids from the end of the moves, or from the safe height over the first entry, to where it begins."""
     if not moves:
         return rapids(np.array([[begin[0], begin[1], options.safe_z_mm], begin]))
     end, z = moves[-1].end_mm, options.safe_z_mm
-    if options.low_links and way is not None:
-        z = min(z, max(way.clear_z_mm(end, begin) + options.clearance_mm, end[2], begin[2]))
+    if options.low_links and planner is not None:
+        z = min(z, max(planner.clear_z_mm(end, begin) + options.clearance_mm, end[2], begin[2]))
     return rapids(np.array([end, [end[0], end[1], z], [begin[0], begin[1], z], begin]))

@@ -1,4 +1,4 @@
-"""The room over a part's surface, by dropping the tool on its triangles: see `twin.cam.path.linking.Way`."""
+"""The room over a part's surface, by dropping the tool on its triangles: see `twin.cam.path.linking.LinkPlanner`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _STEP = 0.0125
 _SLACK_MM = 0.01
 
 
-class SurfaceWay:
+class SurfaceLinkPlanner:
     """Ways over a surface.
 
     Args:

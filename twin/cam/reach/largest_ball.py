@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from twin.cam.reach.reach import Reach, unmachinable
-from twin.cam.slices.element import StructuringElement
+from twin.cam.reach.reach import Reach, tool_reach
 from twin.cam.slices.sections import SlicedPart
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.errors import ToolError
 
 #: The radius is found to this part of itself.
@@ -26,7 +26,7 @@ def largest_ball_mm(
     """Radius of the largest ball that leaves nothing thicker than the slices can tell, by halving.
 
     Args:
-        thin_mm: least thickness that counts, see `twin.cam.reach.reach.unmachinable`.
+        thin_mm: least thickness that counts, see `twin.cam.reach.reach.tool_reach`.
         report: called with every radius that was tried and what the ball leaves.
 
     Returns:
@@ -44,10 +44,10 @@ def largest_ball_mm(
         )
 
     def finishes(radius: float) -> bool:
-        reach = unmachinable(part, StructuringElement.ball(radius), thin_mm=thin_mm, threads=threads)
+        reach = tool_reach(part, StructuringElement.ball(radius), thin_mm=thin_mm, threads=threads)
         if report is not None:
             report(radius, reach)
-        return not reach.leftovers
+        return not reach.uncut_regions
 
     if not finishes(low):
         return None

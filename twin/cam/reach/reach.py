@@ -10,12 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from twin.arrays import FloatArray
-from twin.cam.reach.leftover import Leftover, leftovers
 from twin.cam.reach.slabs import slabs_mm
-from twin.cam.reach.tool_positions import even_places, tool_places
-from twin.cam.slices.element import StructuringElement
+from twin.cam.reach.tool_positions import even_positions, tool_positions
+from twin.cam.reach.uncut_regions import UncutRegion, uncut_regions
 from twin.cam.slices.offset import CHORD_PITCHES, away, frame_boxes, towards
 from twin.cam.slices.sections import Sections, SlicedPart
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.geometry.mesh.closest import ClosestPoints
 from twin.geometry.polygons.convolution import Convolution
 from twin.geometry.polygons.shapes import Shapes, boundaries, minus, to_shapes
@@ -30,27 +30,27 @@ class Reach:
         axis: normal of the slices it was found on.
         pitch_mm: their distance.
         thin_mm: what is nowhere thicker than this is noise of the slices and left out.
-        leftovers: connected regions that stay, the largest first.
+        uncut_regions: connected regions that stay, the largest first.
     """
 
     element: StructuringElement
     axis: int
     pitch_mm: float
     thin_mm: float
-    leftovers: tuple[Leftover, ...]
+    uncut_regions: tuple[UncutRegion, ...]
 
     @property
     def volume_mm3(self) -> float:
         """Material that stays."""
-        return sum((r.volume_mm3 for r in self.leftovers), 0.0)
+        return sum((r.volume_mm3 for r in self.uncut_regions), 0.0)
 
     @property
     def thickness_mm(self) -> float:
         """Where it is thickest, distance from the part; 0 where nothing stays."""
-        return max((r.thickness_mm for r in self.leftovers), default=0.0)
+        return max((r.thickness_mm for r in self.uncut_regions), default=0.0)
 
 
-def unmachinable(
+def tool_reach(
     part: SlicedPart,
     element: StructuringElement,
     *,
@@ -80,12 +80,12 @@ def unmachinable(
     own = to_shapes(part.slices.regions[axis])
     left = minus(closed, own)
     surface = ClosestPoints(part.mesh.vertices_mm, part.mesh.triangles, part.mesh.edges)
-    found = leftovers(left, planes, slabs_mm(part.mesh, axis, planes, pitch), axis, surface, least, threads)
-    return Reach(element=element, axis=axis, pitch_mm=pitch, thin_mm=least, leftovers=found)
+    found = uncut_regions(left, planes, slabs_mm(part.mesh, axis, planes, pitch), axis, surface, least, threads)
+    return Reach(element=element, axis=axis, pitch_mm=pitch, thin_mm=least, uncut_regions=found)
 
 
 def thin_bound_mm(element: StructuringElement, pitch_mm: float) -> float:
-    """Thickness up to which leftovers may come from the slices' pitch alone.
+    """Thickness up to which uncut regions may come from the slices' pitch alone.
 
     Where a surface lies nearly along the slices these know it to about half a pitch; the tool's sweep over it between
     two planes misses as much again, less what its radius bridges. `tool_positions` adds planes where that would
@@ -103,7 +103,7 @@ def _closed(
     radius, chord = element.radius_mm, CHORD_PITCHES * pitch
     shapes, radii = to_shapes(sections.regions), towards(element, axis)
     inflated = Convolution(shapes, sections.positions_mm, radii, radius, chord, threads=threads)
-    places, walls, free = tool_places(inflated, outer, even_places(part, axis, planes, element), pitch)
+    places, walls, free = tool_positions(inflated, outer, even_positions(part, axis, planes, element), pitch)
     radii = away(element, axis)
     swept = Convolution(free, places, radii, radius, chord, threads=threads, edges=boundaries(walls))
     return minus(box, swept.on(planes))

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.cam.slices.element import StructuringElement
 from twin.cam.slices.sections import SlicedPart, face_levels
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.geometry.polygons.convolution import Convolution
 from twin.geometry.polygons.corners import Corners
 from twin.geometry.polygons.shapes import Shape, Shapes, minus
@@ -32,7 +32,7 @@ _HALVINGS = 5
 _STEP_PITCHES = 0.02
 
 
-def even_places(part: SlicedPart, axis: int, planes_mm: FloatArray, element: StructuringElement) -> FloatArray:
+def even_positions(part: SlicedPart, axis: int, planes_mm: FloatArray, element: StructuringElement) -> FloatArray:
     """Planes for the tool's reference point: evenly spaced, and where it stands on faces across the axis."""
     pitch, radius = float(part.slices.pitch_mm[axis]), element.radius_mm
     more = math.ceil(radius / pitch + 1.0)
@@ -45,7 +45,7 @@ def even_places(part: SlicedPart, axis: int, planes_mm: FloatArray, element: Str
     return np.unique(np.concatenate((even, *on)))
 
 
-def tool_places(
+def tool_positions(
     inflated: Convolution, outer: Shape, even_mm: FloatArray, pitch_mm: float
 ) -> tuple[FloatArray, Shapes, Shapes]:
     """Planes, the inflated part on them, and where the tool may be.

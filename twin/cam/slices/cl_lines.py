@@ -16,22 +16,22 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.cam.slices import cl_line_kernels as kernels
-from twin.cam.slices.element import StructuringElement
-from twin.cam.slices.polylines import FINER, Places, polylines
+from twin.cam.slices.polylines import FINER, Samples, polylines
 from twin.cam.slices.sections import Sections
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.geometry.polygons.clip import DECIMALS, LEAST_AREA_MM2
 from twin.geometry.polygons.region import Region, signed_area_mm2
 from twin.geometry.threads import in_parts
 
 #: Lines, and cells to refine, that are not worth several threads.
 _FEW_PLANES, _FEW_CELLS = 4, 64
-#: Distance of the places of `tip_regions`, in square roots of chord times radius: an arc's own chord would be sqrt(8).
-_PLACES = 2.0
+#: Distance of the samples of `cl_regions`, in square roots of chord times radius: an arc's own chord would be sqrt(8).
+_STEP = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Profiles:
-    """The upper sides of a part's sections across x or y, ready for `tip_heights`.
+    """The upper sides of a part's sections across x or y, ready for `cl_heights`.
 
     Attributes:
         axis: 0 for sections normal to x (lines along y), 1 for sections normal to y (lines along x).
@@ -86,11 +86,11 @@ class Profiles:
         )
 
 
-def tip_heights(
+def cl_heights(
     profiles: Profiles,
     element: StructuringElement,
     planes_mm: FloatArray,
-    places: Places,
+    samples: Samples,
     *,
     allowance_mm: float = 0.0,
     smooth: bool = True,
@@ -103,7 +103,7 @@ def tip_heights(
             centre.
         planes_mm: shape (p,), positions of the lines across the sections' axis: y of lines along x, or x of lines
             along y. Any positions will do.
-        places: along every line.
+        samples: along every line.
         allowance_mm: material to leave everywhere.
         smooth: False leaves out what lies between sections, as the paper does: heights are then never too large.
         threads: threads to work with, all cores if not given; results do not depend on it.
@@ -115,20 +115,20 @@ def tip_heights(
         ToolError: an allowance that the element cannot have.
     """
     grown = element.with_allowance(allowance_mm)
-    return _heights(profiles, grown, planes_mm, places, smooth, threads)[0]
+    return _heights(profiles, grown, planes_mm, samples, smooth, threads)[0]
 
 
 def _heights(
     profiles: Profiles,
     element: StructuringElement,
     planes_mm: FloatArray,
-    places: Places,
+    samples: Samples,
     smooth: bool,
     threads: int | None,
 ) -> tuple[FloatArray, NDArray[np.int64]]:
     """Heights, and the section that is touched at each."""
     planes = np.ascontiguousarray(planes_mm, dtype=np.float64)
-    heights, best = np.empty((len(planes), places.count)), np.empty((len(planes), places.count), dtype=np.int64)
+    heights, best = np.empty((len(planes), samples.count)), np.empty((len(planes), samples.count), dtype=np.int64)
 
     def part(first: int, last: int) -> None:
         kernels.envelope(
@@ -136,8 +136,8 @@ def _heights(
             planes[first:last],
             element.disc_mm,
             element.corner_mm,
-            places.start_mm,
-            places.step_mm,
+            samples.start_mm,
+            samples.step_mm,
             smooth,
             heights[first:last],
             best[first:last],
@@ -147,11 +147,11 @@ def _heights(
     return heights + element.drop_mm, best
 
 
-def tip_lines(
+def cl_lines(
     profiles: Profiles,
     element: StructuringElement,
     planes_mm: FloatArray,
-    places: Places,
+    samples: Samples,
     floor_mm: float,
     *,
     allowance_mm: float = 0.0,
@@ -161,11 +161,11 @@ def tip_lines(
 ) -> list[FloatArray]:
     """The polylines that an element's reference point follows along lines over a part.
 
-    Heights as of `tip_heights`, with places in between wherever chords would stand off by more than ``chord_mm``, at
+    Heights as of `cl_heights`, with samples in between wherever chords would stand off by more than ``chord_mm``, at
     inner corners and at walls: there the line first leaves the wall and then goes down upright.
 
     Args:
-        places: the evenly spaced places to begin with; the first and the last are the lines' ends.
+        samples: the evenly spaced samples to begin with; the first and the last are the lines' ends.
         floor_mm: least height, also where the tool touches nothing.
         chord_mm: how far chords may stand off.
 
@@ -176,16 +176,16 @@ def tip_lines(
         ToolError: an allowance that the element cannot have.
     """
     grown = element.with_allowance(allowance_mm)
-    heights, best = _heights(profiles, grown, planes_mm, places, smooth, threads)
+    heights, best = _heights(profiles, grown, planes_mm, samples, smooth, threads)
 
     def within(rows: NDArray[np.int64], cells: NDArray[np.int64]) -> FloatArray:
         touched = np.stack((best[rows, cells], best[rows, cells + 1]), axis=1)
-        return _refined(profiles, grown, np.asarray(planes_mm)[rows], places, cells, touched, smooth, threads)
+        return _refined(profiles, grown, np.asarray(planes_mm)[rows], samples, cells, touched, smooth, threads)
 
-    return polylines(places, heights, within, floor_mm=floor_mm, chord_mm=chord_mm)
+    return polylines(samples, heights, within, floor_mm=floor_mm, chord_mm=chord_mm)
 
 
-def tip_regions(
+def cl_regions(
     sections: Sections,
     element: StructuringElement,
     planes_mm: FloatArray,
@@ -201,8 +201,9 @@ def tip_regions(
     """
     profiles = Profiles.of(sections)
     radius, floor = element.radius_mm, profiles.floor_mm
-    places = Places.between(profiles.low_mm - radius, profiles.high_mm + radius, _PLACES * math.sqrt(chord_mm * radius))
-    lines = tip_lines(profiles, element, planes_mm, places, floor, chord_mm=chord_mm, smooth=False, threads=threads)
+    step = _STEP * math.sqrt(chord_mm * radius)
+    samples = Samples.between(profiles.low_mm - radius, profiles.high_mm + radius, step)
+    lines = cl_lines(profiles, element, planes_mm, samples, floor, chord_mm=chord_mm, smooth=False, threads=threads)
     return tuple(Region.of(*_below(line, floor)) for line in lines)
 
 
@@ -226,14 +227,14 @@ def _refined(
     profiles: Profiles,
     element: StructuringElement,
     planes_mm: FloatArray,
-    places: Places,
+    samples: Samples,
     cells: NDArray[np.int64],
     touched: NDArray[np.int64],
     smooth: bool,
     threads: int | None,
 ) -> FloatArray:
     """Heights within cells, shape (cells, FINER + 1)."""
-    starts = np.column_stack((planes_mm, places.at_mm[cells]))
+    starts = np.column_stack((planes_mm, samples.at_mm[cells]))
     heights = np.empty((len(cells), FINER + 1))
 
     def part(first: int, last: int) -> None:
@@ -243,7 +244,7 @@ def _refined(
             touched[first:last],
             element.disc_mm,
             element.corner_mm,
-            places.step_mm / FINER,
+            samples.step_mm / FINER,
             smooth,
             heights[first:last],
         )

@@ -19,9 +19,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from twin.arrays import FloatArray, frozen
-from twin.cam.slices.cl_lines import tip_regions
-from twin.cam.slices.element import StructuringElement
+from twin.cam.slices.cl_lines import cl_regions
 from twin.cam.slices.sections import Sections, SlicedPart, outside_sections
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.geometry.polygons.convolution import Convolution, Radii, arc_segments
 from twin.geometry.polygons.region import Region
 from twin.geometry.polygons.shapes import Shape, boundaries, box_shape, grown_each, minus, to_region, to_shapes
@@ -99,7 +99,7 @@ def inflated_planes(
         planes_mm: shape (n,), positions along the sections' axis.
     """
     if not element.centred and sections.axis != 2:
-        return tip_regions(sections, element, planes_mm, chord_mm=chord_mm, threads=threads)
+        return cl_regions(sections, element, planes_mm, chord_mm=chord_mm, threads=threads)
     shapes, radii = to_shapes(sections.regions), towards(element, sections.axis)
     grown = Convolution(shapes, sections.positions_mm, radii, element.radius_mm, chord_mm, threads=threads)
     return tuple(to_region(s) for s in grown.on(planes_mm))

@@ -1,4 +1,4 @@
-"""Lines of a tool's tip as polylines, from heights at even places and more of them where chords would not do."""
+"""Lines of a tool's tip as polylines, from heights at even samples and more of them where chords would not do."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ Within: TypeAlias = Callable[[NDArray[np.int64], NDArray[np.int64]], FloatArray]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Places:
-    """Evenly spaced places along a line.
+class Samples:
+    """Evenly spaced samples along a line.
 
     Attributes:
         start_mm: the first.
@@ -35,39 +35,39 @@ class Places:
     count: int
 
     @classmethod
-    def between(cls, low_mm: float, high_mm: float, step_mm: float) -> Places:
+    def between(cls, low_mm: float, high_mm: float, step_mm: float) -> Samples:
         """Both ends included, no farther apart than a step."""
         gaps = max(1, math.ceil((high_mm - low_mm) / step_mm - 1e-9))
         return cls(start_mm=low_mm, step_mm=(high_mm - low_mm) / gaps, count=gaps + 1)
 
     @property
     def at_mm(self) -> FloatArray:
-        """The places, shape (count,)."""
+        """The samples, shape (count,)."""
         return np.asarray(self.start_mm + self.step_mm * np.arange(self.count, dtype=np.float64))
 
 
 def polylines(
-    places: Places, heights: FloatArray, within: Within, *, floor_mm: float, chord_mm: float
+    samples: Samples, heights: FloatArray, within: Within, *, floor_mm: float, chord_mm: float
 ) -> list[FloatArray]:
-    """Lines through heights, with places in between wherever chords would stand off by more than ``chord_mm``.
+    """Lines through heights, with samples in between wherever chords would stand off by more than ``chord_mm``.
 
     At inner corners the sides of the line are drawn on until they meet; at walls the line first leaves the wall and
     then goes down upright.
 
     Args:
-        heights: shape (p, n), at the even places of every line.
-        within: heights within cells between two of the places, both ends included.
+        heights: shape (p, n), at the even samples of every line.
+        within: heights within cells between two of the samples, both ends included.
         floor_mm: least height.
 
     Returns:
         for every line shape (m, 2): place along it, increasing or equal, and height.
     """
     heights = np.maximum(heights, floor_mm)
-    rows, cells = np.nonzero(_rough(heights, places.step_mm, chord_mm))
+    rows, cells = np.nonzero(_rough(heights, samples.step_mm, chord_mm))
     finer = np.maximum(within(rows, cells), floor_mm)
     begins = np.searchsorted(rows, np.arange(len(heights) + 1))
     points, ends = np.empty((4 * (heights.size + finer.size), 2)), np.empty(len(heights), dtype=np.int64)
-    kernels.lines(heights, begins, cells, finer, places.start_mm, places.step_mm, points, ends)
+    kernels.lines(heights, begins, cells, finer, samples.start_mm, samples.step_mm, points, ends)
     return [points[a:b].copy() for a, b in pairwise((0, *ends.tolist()))]
 
 

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.cam.slices.polylines import FINER, Places, polylines
+from twin.cam.slices.polylines import FINER, Samples, polylines
 
 
 def drop_lines(
     lowest: Callable[[FloatArray], FloatArray],
     along: int,
     planes_mm: FloatArray,
-    places: Places,
+    samples: Samples,
     *,
     floor_mm: float,
     chord_mm: float,
@@ -26,7 +26,7 @@ def drop_lines(
         lowest: lowest tips over plan points, shape (n, 2), as `twin.cam.surface.drop_cutter.DropCutter.drop`.
         along: 0 for lines along x, 1 for lines along y.
         planes_mm: shape (p,), positions of the lines across that.
-        places: the evenly spaced places to begin with.
+        samples: the evenly spaced samples to begin with.
         floor_mm: least height.
         chord_mm: how far chords may stand off.
     """
@@ -38,9 +38,9 @@ def drop_lines(
         return lowest(np.column_stack(points)).reshape(at.shape)
 
     def within(rows: NDArray[np.int64], cells: NDArray[np.int64]) -> FloatArray:
-        inner = places.step_mm / FINER * np.arange(FINER + 1)
-        return heights(places.at_mm[cells, None] + inner, planes[rows, None])
+        inner = samples.step_mm / FINER * np.arange(FINER + 1)
+        return heights(samples.at_mm[cells, None] + inner, planes[rows, None])
 
     return polylines(
-        places, heights(places.at_mm[None, :], planes[:, None]), within, floor_mm=floor_mm, chord_mm=chord_mm
+        samples, heights(samples.at_mm[None, :], planes[:, None]), within, floor_mm=floor_mm, chord_mm=chord_mm
     )

@@ -72,12 +72,12 @@ def _own_pitch(part: Path) -> float:
 
 
 def _reach(sliced: SlicedPart, shape: ToolShape, *, above: bool, thin: float | None, threads: int | None) -> Reach:
-    from twin.cam.reach.reach import unmachinable
-    from twin.cam.slices.element import StructuringElement
+    from twin.cam.reach.reach import tool_reach
+    from twin.cam.slices.structuring_element import StructuringElement
 
     any_side = shape.disc_mm == 0.0 and shape.taper_rad == 0.0 and not above
     element = StructuringElement.ball(shape.corner_mm) if any_side else StructuringElement.tool(shape)
-    return unmachinable(sliced, element, thin_mm=thin, threads=threads)
+    return tool_reach(sliced, element, thin_mm=thin, threads=threads)
 
 
 def _warn_if_coarse(reaches: dict[str, Reach], thin: float | None) -> None:

@@ -74,13 +74,13 @@ def write(
 
 
 def _write_meshes(reaches: dict[str, Reach], folder: Path, *, force: bool) -> None:
-    from twin.cam.reach.leftover_mesh import leftover_mesh
+    from twin.cam.reach.uncut_mesh import uncut_mesh
     from twin.workpiece.mesh_file import write_mesh
 
     folder.mkdir(parents=True, exist_ok=True)
     for text, reach in reaches.items():
-        if reach.leftovers:
-            write_mesh(folder / _file_name(text), leftover_mesh(reach.leftovers), force=force)
+        if reach.uncut_regions:
+            write_mesh(folder / _file_name(text), uncut_mesh(reach.uncut_regions), force=force)
 
 
 def _file_name(text: str) -> str:

@@ -18,8 +18,8 @@ from twin.workpiece.store import PLANE_AXES
 
 if TYPE_CHECKING:
     from twin.arrays import FloatArray
-    from twin.cam.reach.leftover import Leftover
     from twin.cam.reach.reach import Reach
+    from twin.cam.reach.uncut_regions import UncutRegion
     from twin.cam.slices.sections import SlicedPart
     from twin.geometry.polygons.region import Region
 
@@ -51,8 +51,8 @@ def _draw_above(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> No
     for number, (text, reach) in enumerate(reaches.items()):
         color = _COLORS[number % len(_COLORS)]
         label = f"{text}: {reach.volume_mm3:.4g} mm³, {reach.thickness_mm:.3f} mm"
-        axes.plot([], [], color=color, linewidth=5.0, label=label if reach.leftovers else f"{text}: nothing stays")
-        for region in reach.leftovers:
+        axes.plot([], [], color=color, linewidth=5.0, label=label if reach.uncut_regions else f"{text}: nothing stays")
+        for region in reach.uncut_regions:
             if region.axis == 2:
                 _fill(axes, united(region.pieces), color)
     low, high = sliced.slices.low_mm, sliced.slices.high_mm
@@ -63,7 +63,7 @@ def _draw_above(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> No
 
 
 def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None:
-    regions = [r for reach in reaches.values() for r in reach.leftovers]
+    regions = [r for reach in reaches.values() for r in reach.uncut_regions]
     if not regions:
         axes.set_axis_off()
         axes.text(0.5, 0.5, "Nothing stays.", ha="center", va="center", transform=axes.transAxes)
@@ -76,7 +76,7 @@ def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None
     _fill_region(axes, cut_sections(sliced.mesh, axis, np.array([plane])).regions[0])
     for number, reach in enumerate(reaches.values()):
         color = _COLORS[number % len(_COLORS)]
-        boxes = [b for region in reach.leftovers for b in _cut_boxes(region, axis, plane)]
+        boxes = [b for region in reach.uncut_regions for b in _cut_boxes(region, axis, plane)]
         axes.add_collection(PolyCollection(boxes, facecolors=color, edgecolors="none", alpha=0.85))
     reach_mm = max(8.0 * deepest.thickness_mm, 0.75 * float(np.ptp([deepest.low_mm[2], deepest.high_mm[2]])))
     middle = deepest.deepest_mm[[u, v]]
@@ -84,7 +84,7 @@ def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None
     axes.set_title(f"Cut at {_AXES[axis]} {plane:.2f}, through the thickest place ({deepest.thickness_mm:.3f} mm)")
 
 
-def _cut_boxes(region: Leftover, axis: int, plane: float) -> list[FloatArray]:
+def _cut_boxes(region: UncutRegion, axis: int, plane: float) -> list[FloatArray]:
     """Where a plane across x or y cuts a region's slices, as rectangles."""
     if region.axis != 2:
         return []

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from twin.arrays import FloatArray
-    from twin.cam.reach.leftover import Leftover
     from twin.cam.reach.reach import Reach
+    from twin.cam.reach.uncut_regions import UncutRegion
     from twin.cam.slices.sections import SlicedPart
 
 #: Regions told of each tool; the object of --json has all.
@@ -38,10 +38,10 @@ def print_report(
         console.print()
         console.print(_tools_table(reaches))
     for text, reach in reaches.items():
-        if reach.leftovers:
+        if reach.uncut_regions:
             console.print()
-            console.print(Text(f"{text}: {plural(len(reach.leftovers), 'region')}", style="bold"))
-            console.print(_regions_table(reach.leftovers[:_MOST_REGIONS]))
+            console.print(Text(f"{text}: {plural(len(reach.uncut_regions), 'region')}", style="bold"))
+            console.print(_regions_table(reach.uncut_regions[:_MOST_REGIONS]))
     if searched:
         console.print()
         console.print(Text(_ball_text(ball_mm)))
@@ -62,15 +62,15 @@ def _tools_table(reaches: dict[str, Reach]) -> Table:
         table.add_column(head, justify="left" if head in ("tool", "from") else "right", no_wrap=True)
     for text, reach in reaches.items():
         side = "any side" if reach.element.centred else "above"
-        if not reach.leftovers:
+        if not reach.uncut_regions:
             table.add_row(text, side, "nothing", "", "", f"{reach.thin_mm:.3f}")
             continue
-        numbers = (f"{reach.volume_mm3:.4g}", f"{reach.thickness_mm:.3f}", str(len(reach.leftovers)))
+        numbers = (f"{reach.volume_mm3:.4g}", f"{reach.thickness_mm:.3f}", str(len(reach.uncut_regions)))
         table.add_row(text, side, *numbers, f"{reach.thin_mm:.3f}")
     return table
 
 
-def _regions_table(regions: tuple[Leftover, ...]) -> Table:
+def _regions_table(regions: tuple[UncutRegion, ...]) -> Table:
     from rich import box
     from rich.table import Table
 
@@ -114,7 +114,7 @@ def _tool(text: str, reach: Reach) -> dict[str, Any]:
                 "high_mm": _list(r.high_mm),
                 "centroid_mm": _list(r.centroid_mm),
             }
-            for r in reach.leftovers
+            for r in reach.uncut_regions
         ],
     }
 

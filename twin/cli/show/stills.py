@@ -9,8 +9,8 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cam.path.toolpath import MoveKind, ToolPath
-from twin.cam.reach.leftover_mesh import leftover_mesh
 from twin.cam.reach.reach import Reach
+from twin.cam.reach.uncut_mesh import uncut_mesh
 from twin.sinks.rerun.still import Colors, Still, StillLines, StillMesh, StillPoints
 from twin.verification.deviation import Deviation
 from twin.workpiece.from_mesh import Solid
@@ -62,10 +62,10 @@ def reaches_still(reaches: Mapping[str, Reach], part: Solid) -> Still:
         reaches: by the texts of their tools.
     """
     colors = {text: _TOOL_COLORS[k % len(_TOOL_COLORS)] for k, text in enumerate(reaches)}
-    left = {text: reach for text, reach in reaches.items() if reach.leftovers}
+    left = {text: reach for text, reach in reaches.items() if reach.uncut_regions}
     meshes = [_mesh(part)]
     for text, reach in left.items():
-        made = leftover_mesh(reach.leftovers)
+        made = uncut_mesh(reach.uncut_regions)
         entity = f"leftover/{entity_name(text)}"
         meshes.append(
             StillMesh(entity=entity, vertices_mm=made.vertices_mm, triangles=made.triangles, color=colors[text])
@@ -73,10 +73,10 @@ def reaches_still(reaches: Mapping[str, Reach], part: Solid) -> Still:
     points = [
         StillPoints(
             entity=f"thickest/{entity_name(text)}",
-            points_mm=np.array([r.deepest_mm for r in reach.leftovers[:_NAMED]]),
-            colors=np.array([colors[text]] * min(_NAMED, len(reach.leftovers)), dtype=np.uint8),
+            points_mm=np.array([r.deepest_mm for r in reach.uncut_regions[:_NAMED]]),
+            colors=np.array([colors[text]] * min(_NAMED, len(reach.uncut_regions)), dtype=np.uint8),
             radius_mm=reach.pitch_mm,
-            labels=[f"{text}: {r.thickness_mm:.3f} mm" for r in reach.leftovers[:_NAMED]],
+            labels=[f"{text}: {r.thickness_mm:.3f} mm" for r in reach.uncut_regions[:_NAMED]],
         )
         for text, reach in left.items()
     ]
@@ -92,8 +92,8 @@ def entity_name(text: str) -> str:
 def _reach_table(reaches: Mapping[str, Reach]) -> str:
     """Markdown."""
     rows = [
-        f"| {text} | {reach.volume_mm3:.4g} | {reach.thickness_mm:.3f} | {len(reach.leftovers)} |"
-        if reach.leftovers
+        f"| {text} | {reach.volume_mm3:.4g} | {reach.thickness_mm:.3f} | {len(reach.uncut_regions)} |"
+        if reach.uncut_regions
         else f"| {text} | nothing | | |"
         for text, reach in reaches.items()
     ]

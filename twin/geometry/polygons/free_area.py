@@ -15,7 +15,7 @@ from twin.geometry.polygons.outline import Area, grown, pieces
 _SLACK = 5.0 * 10.0**-DECIMALS
 
 
-class Room:
+class FreeArea:
     """An area made ready for many questions.
 
     Args:
@@ -79,15 +79,15 @@ def has_point(polygon: Area, point_mm: FloatArray) -> bool:
     return bool(shapely.contains_xy(polygon, point_mm[0], point_mm[1]))
 
 
-def rows_of(room: Room, spacing_mm: float) -> Iterator[list[FloatArray]]:
-    """What of lines along x lies in a room: for each row, from low y to high, its pieces from left to right."""
-    if room.empty:
+def rows_of(free: FreeArea, spacing_mm: float) -> Iterator[list[FloatArray]]:
+    """What of lines along x lies in a free area: for each row, from low y to high, its pieces from left to right."""
+    if free.empty:
         return
-    x0, y0, x1, y1 = shapely.bounds(room.area).tolist()
+    x0, y0, x1, y1 = shapely.bounds(free.area).tolist()
     count = max(1, int(np.ceil((y1 - y0) / spacing_mm - 1e-9)))
     for k in range(count + 1):
         y = min(max(y0 + k * (y1 - y0) / count, y0 + 1e-6), y1 - 1e-6)
         line = shapely.LineString([(x0 - 1.0, y), (x1 + 1.0, y)])
-        parts = [p for p in shapely.get_parts(shapely.intersection(line, room.area)) if p.geom_type == "LineString"]
+        parts = [p for p in shapely.get_parts(shapely.intersection(line, free.area)) if p.geom_type == "LineString"]
         found = sorted((np.array(p.coords) for p in parts if p.length > _SLACK), key=lambda p: float(p[:, 0].min()))
         yield [p if p[0, 0] <= p[-1, 0] else p[::-1] for p in found]

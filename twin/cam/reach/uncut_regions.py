@@ -33,7 +33,7 @@ _MEASURED = 128
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Leftover:
+class UncutRegion:
     """One connected region of material that stays.
 
     Attributes:
@@ -60,7 +60,7 @@ class Leftover:
     pieces: Shapes
 
 
-def leftovers(
+def uncut_regions(
     left: Shapes,
     planes_mm: FloatArray,
     slabs_mm: FloatArray,
@@ -68,7 +68,7 @@ def leftovers(
     surface: ClosestPoints,
     thin_mm: float,
     threads: int | None = None,
-) -> tuple[Leftover, ...]:
+) -> tuple[UncutRegion, ...]:
     """Connect what is left on planes to regions.
 
     Args:
@@ -117,10 +117,10 @@ def _measured(pieces: Pieces) -> tuple[FloatArray, NDArray[np.int64]]:
 
 def _leftover(
     pieces: Pieces, planes_mm: FloatArray, slabs_mm: FloatArray, axis: int, thickness_mm: float, deepest_mm: FloatArray
-) -> Leftover:
+) -> UncutRegion:
     volumes, bounds = pieces.areas_mm2 * (slabs_mm[:, 1] - slabs_mm[:, 0]), pieces.bounds_mm
     share = volumes / volumes.sum()
-    return Leftover(
+    return UncutRegion(
         volume_mm3=float(volumes.sum()),
         thickness_mm=thickness_mm,
         deepest_mm=deepest_mm,

@@ -13,10 +13,10 @@ from support.facets import ring_in_facets
 
 from twin.arrays import FloatArray
 from twin.cam.reach.largest_ball import largest_ball_mm
-from twin.cam.reach.leftover_mesh import leftover_mesh
-from twin.cam.reach.reach import thin_bound_mm, unmachinable
-from twin.cam.slices.element import StructuringElement
+from twin.cam.reach.reach import thin_bound_mm, tool_reach
+from twin.cam.reach.uncut_mesh import uncut_mesh
 from twin.cam.slices.sections import SlicedPart, slice_part
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.errors import ToolError
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import solid
@@ -68,8 +68,8 @@ def torus_part() -> SlicedPart:
 def test_a_ball_of_4_mm_leaves_the_closed_forms_ring_in_the_inner_fillet_and_nothing_in_the_outer(
     torus_part: SlicedPart,
 ) -> None:
-    reach = unmachinable(torus_part, StructuringElement.ball(4.0))
-    (ring,) = reach.leftovers
+    reach = tool_reach(torus_part, StructuringElement.ball(4.0))
+    (ring,) = reach.uncut_regions
     p = profile()
     assert ring.volume_mm3 == pytest.approx(round_ring_mm3(p) * ROUND, rel=0.006)
     foot, own = (p.fillet(r, -1)[0] for r in (4.0, 3.0))
@@ -89,7 +89,7 @@ def test_a_ball_of_4_mm_leaves_the_closed_forms_ring_in_the_inner_fillet_and_not
 def test_the_ring_on_the_examples_own_stl_is_what_its_facets_leave() -> None:
     exact = ring_in_facets(4.0, 512, 160)
     part = slice_part(solids.torus(), 0.05)
-    (ring,) = unmachinable(part, StructuringElement.ball(4.0)).leftovers
+    (ring,) = tool_reach(part, StructuringElement.ball(4.0)).uncut_regions
     assert ring.volume_mm3 == pytest.approx(exact.volume_mm3, rel=0.001)
     assert ring.volume_mm3 == pytest.approx(round_ring_mm3(solids.torus_example().PROFILE), rel=0.005)
     assert ring.thickness_mm == pytest.approx(exact.thickness_mm, abs=0.0005)
@@ -118,14 +118,14 @@ def half_size() -> Any:
 @pytest.mark.parametrize("pitch", [0.08, 0.07, 0.06])
 def test_faces_may_lie_anywhere_between_slices(pitch: float) -> None:
     part = part_of(solids.torus_example().torus(128, 96, half_size()), pitch)
-    (ring,) = unmachinable(part, StructuringElement.ball(2.0)).leftovers
+    (ring,) = tool_reach(part, StructuringElement.ball(2.0)).uncut_regions
     assert ring.volume_mm3 == pytest.approx(ring_in_facets(2.0, 128, 96, half_size()).volume_mm3, rel=0.01)
     assert ring.low_mm[2] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_slices_that_run_along_the_ring_find_it_too() -> None:
     part = part_of(solids.torus_example().torus(64, 48, half_size()), 0.2)
-    (ring,) = unmachinable(part, StructuringElement.ball(2.0), axis=0, thin_mm=0.05).leftovers
+    (ring,) = tool_reach(part, StructuringElement.ball(2.0), axis=0, thin_mm=0.05).uncut_regions
     exact = ring_in_facets(2.0, 64, 48, half_size())
     assert ring.volume_mm3 == pytest.approx(exact.volume_mm3, rel=0.02)
     assert ring.thickness_mm == pytest.approx(exact.thickness_mm, abs=0.01)
@@ -133,15 +133,15 @@ def test_slices_that_run_along_the_ring_find_it_too() -> None:
 
 def test_a_ball_of_the_inner_fillet_finishes_the_part() -> None:
     part = slice_part(solids.torus(48, 96), 0.1)
-    reach = unmachinable(part, StructuringElement.ball(3.0))
-    assert reach.leftovers == () and reach.volume_mm3 == 0.0 and reach.thickness_mm == 0.0
+    reach = tool_reach(part, StructuringElement.ball(3.0))
+    assert reach.uncut_regions == () and reach.volume_mm3 == 0.0 and reach.thickness_mm == 0.0
 
 
 @pytest.mark.parametrize("text", ["flat 4", "ball 4", "bull 4 r1"])
 def test_corners_of_a_pocket(text: str) -> None:
     side, deep = 10.0, 6.0
     part = part_of(solids.pocket(side, deep), 0.1)
-    reach = unmachinable(part, tool(text))
+    reach = tool_reach(part, tool(text))
     shape = parse_tool(text)
     z = np.arange(0.0005, deep, 0.001)
     radius = shape.radius_mm(z)
@@ -151,14 +151,14 @@ def test_corners_of_a_pocket(text: str) -> None:
     exact = float(np.sum(side**2 - cleared) * 0.001)
     assert reach.volume_mm3 == pytest.approx(exact, rel=0.01)
     if text == "flat 4":
-        assert len(reach.leftovers) == 4
+        assert len(reach.uncut_regions) == 4
         assert reach.thickness_mm == pytest.approx(2.0 - math.sqrt(2.0), rel=0.02)
-    assert reach.leftovers[0].high_mm[2] == pytest.approx(0.0, abs=0.1)
+    assert reach.uncut_regions[0].high_mm[2] == pytest.approx(0.0, abs=0.1)
 
 
 def test_a_tool_larger_than_the_pocket_leaves_it_full() -> None:
     part = part_of(solids.pocket(10.0, 6.0), 0.25)
-    (whole,) = unmachinable(part, tool("flat 16")).leftovers
+    (whole,) = tool_reach(part, tool("flat 16")).uncut_regions
     assert whole.volume_mm3 == pytest.approx(600.0, rel=0.005)
     np.testing.assert_allclose(whole.low_mm, (-5.0, -5.0, -6.0), atol=1e-3)
     np.testing.assert_allclose(whole.high_mm, (5.0, 5.0, 0.0), atol=1e-3)
@@ -172,9 +172,9 @@ def test_what_lies_below_an_overhang_is_reached_from_a_side_but_not_from_above()
         [(-8.0, 0.0), (8.0, 0.0), (8.0, 8.0), (-8.0, 8.0), (-8.0, 6.0), (2.0, 6.0), (2.0, 2.0), (-8.0, 2.0)]
     )
     part = part_of(solids.extruded(outline), 0.25)
-    above = unmachinable(part, tool("ball 2"))
+    above = tool_reach(part, tool("ball 2"))
     assert above.volume_mm3 == pytest.approx(10.0 * 4.0 * 12.0, rel=0.01)
-    around = unmachinable(part, StructuringElement.ball(1.0))
+    around = tool_reach(part, StructuringElement.ball(1.0))
     # two sharp inner edges, 12 mm long
     assert around.volume_mm3 == pytest.approx(2.0 * 12.0 * (1.0 - 0.25 * math.pi), rel=0.1)
 
@@ -183,7 +183,7 @@ def test_what_lies_below_an_overhang_is_reached_from_a_side_but_not_from_above()
 def test_the_direction_of_slices_does_not_matter(axis: int) -> None:
     outline = np.array([(-6.0, 0.0), (6.0, 0.0), (6.0, 3.0), (1.0, 3.0), (1.0, 7.0), (-6.0, 7.0)])
     part = part_of(solids.extruded(outline), 0.1)
-    found = unmachinable(part, StructuringElement.ball(2.0), axis=axis)
+    found = tool_reach(part, StructuringElement.ball(2.0), axis=axis)
     # the ball rolls along the edge, and beyond its ends
     exact = 12.0 * (4.0 - math.pi)
     assert found.volume_mm3 == pytest.approx(exact, rel=0.03)
@@ -193,11 +193,11 @@ def test_the_direction_of_slices_does_not_matter(axis: int) -> None:
 def test_leftovers_as_triangles_are_a_solid_of_the_same_volume() -> None:
     part = part_of(solids.pocket(10.0, 6.0), 0.5)
     for found, axis in (
-        (unmachinable(part, tool("flat 4")), 2),
-        (unmachinable(part, StructuringElement.ball(2.0), axis=1), 1),
+        (tool_reach(part, tool("flat 4")), 2),
+        (tool_reach(part, StructuringElement.ball(2.0), axis=1), 1),
     ):
         assert found.axis == axis
-        mesh = leftover_mesh(found.leftovers)
+        mesh = uncut_mesh(found.uncut_regions)
         made = solid(mesh.vertices_mm[mesh.triangles], "leftovers")
         assert made.volume_mm3 == pytest.approx(found.volume_mm3, rel=1e-3)
 
@@ -218,4 +218,4 @@ def test_the_bound_grows_with_the_pitch_and_tools_from_above_need_slices_across_
     ball = StructuringElement.ball(4.0)
     assert thin_bound_mm(ball, 0.05) < thin_bound_mm(ball, 0.1) <= 0.1
     with pytest.raises(ValueError, match="tools from above need slices across z, got axis 0"):
-        unmachinable(part_of(solids.box((0, 0, 0), (5, 5, 5)), 1.0), tool("flat 4"), axis=0)
+        tool_reach(part_of(solids.box((0, 0, 0), (5, 5, 5)), 1.0), tool("flat 4"), axis=0)

@@ -1,4 +1,4 @@
-"""Leftover material as triangles: every piece of a slice as a prism over what it stands for."""
+"""UncutRegion material as triangles: every piece of a slice as a prism over what it stands for."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Iterable
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cam.reach.leftover import Leftover
+from twin.cam.reach.uncut_regions import UncutRegion
 from twin.geometry.polygons.pieces import prism_parts
 from twin.geometry.polygons.shapes import Shape
 from twin.workpiece.store import PLANE_AXES
 from twin.workpiece.to_mesh import SurfaceMesh
 
 
-def leftover_mesh(regions: Iterable[Leftover]) -> SurfaceMesh:
+def uncut_mesh(regions: Iterable[UncutRegion]) -> SurfaceMesh:
     """Regions as closed prisms that touch each other along the slices' borders; for the eye, and for other programs."""
     corners = [
         _prism(piece, float(low), float(high), region.axis)

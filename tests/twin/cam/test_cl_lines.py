@@ -7,10 +7,10 @@ import pytest
 from support import solids
 
 from twin.arrays import FloatArray
-from twin.cam.slices.cl_lines import Profiles, tip_heights, tip_lines
-from twin.cam.slices.element import StructuringElement
-from twin.cam.slices.polylines import Places
+from twin.cam.slices.cl_lines import Profiles, cl_heights, cl_lines
+from twin.cam.slices.polylines import Samples
 from twin.cam.slices.sections import Sections, SlicedPart, slice_part
+from twin.cam.slices.structuring_element import StructuringElement
 from twin.cam.surface.drop_cutter import DropCutter
 from twin.cam.surface.surface import surface_of_mesh
 from twin.tools.text import parse_tool
@@ -23,9 +23,9 @@ def exact(mesh: Solid, text: str, points: FloatArray, floor: float) -> FloatArra
 
 def errors_um(part: SlicedPart, text: str, axis: int, planes: FloatArray, *, smooth: bool = True) -> FloatArray:
     profiles = Profiles.of(part.sections(axis))
-    places = Places.between(-29.9, 29.9, 0.07)
+    places = Samples.between(-29.9, 29.9, 0.07)
     tool = StructuringElement.tool(parse_tool(text))
-    heights = tip_heights(profiles, tool, planes, places, smooth=smooth)
+    heights = cl_heights(profiles, tool, planes, places, smooth=smooth)
     across, along = np.meshgrid(planes, places.at_mm, indexing="ij")
     points = np.column_stack((along.ravel(), across.ravel())[:: 1 if axis == 1 else -1])
     return 1000.0 * (heights.ravel() - exact(part.mesh, text, points, -20.0))
@@ -65,8 +65,8 @@ def test_without_interpolation_heights_are_never_too_large(torus_part: SlicedPar
 
 def test_a_flat_tool_narrower_than_the_pitch_stays_within_a_pitch_of_the_surface() -> None:
     part = slice_part(solids.torus(64, 24), 1.0)
-    rows, places = np.arange(-28.0, 28.0, 0.3), Places.between(-28.0, 28.0, 0.3)
-    heights = tip_heights(Profiles.of(part.sections(1)), StructuringElement.tool(parse_tool("flat 1")), rows, places)
+    rows, places = np.arange(-28.0, 28.0, 0.3), Samples.between(-28.0, 28.0, 0.3)
+    heights = cl_heights(Profiles.of(part.sections(1)), StructuringElement.tool(parse_tool("flat 1")), rows, places)
     across, along = np.meshgrid(rows, places.at_mm, indexing="ij")
     points = np.column_stack((along.ravel(), across.ravel()))
     shifts = np.array([(0.0, d) for d in np.linspace(-1.0, 1.0, 9)])
@@ -89,7 +89,7 @@ def test_lines_leave_walls_and_meet_in_inner_corners() -> None:
     mesh = solid(solids.pocket(), "pocket")
     profiles = Profiles.of(slice_part(mesh, 0.2).sections(1))
     tool = StructuringElement.tool(parse_tool("ball 4"))
-    (line,) = tip_lines(profiles, tool, np.array([0.1]), Places.between(-13.0, 13.0, 0.1), -20.0)
+    (line,) = cl_lines(profiles, tool, np.array([0.1]), Samples.between(-13.0, 13.0, 0.1), -20.0)
     assert (np.diff(line[:, 0]) >= 0.0).all()
     middle = np.linspace(0.01, 0.99, 7)[:, None, None]
     between = (line[:-1] + middle * np.diff(line, axis=0)).reshape(-1, 2)
@@ -113,7 +113,7 @@ def test_an_inner_corner_between_places_is_found() -> None:
     valley = np.array([(-8.0, -8.0), (8.0, -8.0), (8.0, 7.97), (0.03, 0.0), (-7.97, 8.0), (-8.0, 8.0)])
     profiles = Profiles.of(slice_part(solid(solids.extruded(valley), "valley"), 0.1).sections(1))
     tool = StructuringElement.tool(parse_tool("ball 2"))
-    (line,) = tip_lines(profiles, tool, np.array([0.1]), Places.between(-2.0, 2.0, 0.1), -9.0)
+    (line,) = cl_lines(profiles, tool, np.array([0.1]), Samples.between(-2.0, 2.0, 0.1), -9.0)
     lowest = line[np.argmin(line[:, 1])]
     np.testing.assert_allclose(lowest, (0.03, np.sqrt(2.0) - 1.0), atol=1e-4)
 
@@ -125,32 +125,32 @@ def test_a_ridge_between_slices_is_met() -> None:
     part = slice_part(solid(roof, "roof"), 0.4)
     assert np.abs(part.slices.positions_mm(1) - 0.13).min() > 0.05
     tool = StructuringElement.tool(parse_tool("ball 4"))
-    rows, places = np.array([-0.5, 0.13, 1.0]), Places.between(-3.0, 3.0, 0.5)
-    heights = tip_heights(Profiles.of(part.sections(1)), tool, rows, places)
+    rows, places = np.array([-0.5, 0.13, 1.0]), Samples.between(-3.0, 3.0, 0.5)
+    heights = cl_heights(Profiles.of(part.sections(1)), tool, rows, places)
     wanted = exact(part.mesh, "ball 4", np.column_stack((np.zeros(3), rows)), -20.0)
     assert wanted[1] == pytest.approx(3.87, abs=1e-4)
     np.testing.assert_allclose(heights, np.repeat(wanted[:, None], places.count, axis=1), atol=0.006)
-    even = tip_heights(Profiles.of(Sections.of(part.slices, 1)), tool, rows, places)
+    even = cl_heights(Profiles.of(Sections.of(part.slices, 1)), tool, rows, places)
     assert even[1, 0] < 3.87 - 0.05
 
 
 def test_an_allowance_lifts_as_a_larger_ball_does(torus_part: SlicedPart) -> None:
-    profiles, places = Profiles.of(torus_part.sections(1)), Places.between(-20.0, 20.0, 0.5)
+    profiles, places = Profiles.of(torus_part.sections(1)), Samples.between(-20.0, 20.0, 0.5)
     rows = np.array([0.1, 11.3])
-    left = tip_heights(profiles, StructuringElement.tool(parse_tool("ball 8")), rows, places, allowance_mm=0.5)
-    centre = tip_heights(profiles, StructuringElement.ball(4.5), rows, places)
+    left = cl_heights(profiles, StructuringElement.tool(parse_tool("ball 8")), rows, places, allowance_mm=0.5)
+    centre = cl_heights(profiles, StructuringElement.ball(4.5), rows, places)
     np.testing.assert_allclose(left, centre - 4.0, atol=1e-12)
 
 
 def test_threads_change_nothing_and_no_part_is_no_height(torus_part: SlicedPart) -> None:
-    profiles, places = Profiles.of(torus_part.sections(1)), Places.between(-40.0, 40.0, 0.3)
+    profiles, places = Profiles.of(torus_part.sections(1)), Samples.between(-40.0, 40.0, 0.3)
     tool = StructuringElement.tool(parse_tool("ball 8"))
     rows = np.array([-50.0, -3.0, 0.0, 7.1])
-    one, three = (tip_lines(profiles, tool, rows, places, -11.0, threads=n) for n in (1, 3))
+    one, three = (cl_lines(profiles, tool, rows, places, -11.0, threads=n) for n in (1, 3))
     for a, b in zip(one, three, strict=True):
         np.testing.assert_array_equal(a, b)
     assert (one[0][:, 1] == -11.0).all()
-    assert np.isneginf(tip_heights(profiles, tool, rows[:1], places)).all()
+    assert np.isneginf(cl_heights(profiles, tool, rows[:1], places)).all()
 
 
 def test_sections_across_z_have_no_profiles(torus_part: SlicedPart) -> None:
