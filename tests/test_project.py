@@ -17,7 +17,7 @@ from twin.job import JobFile
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(p for folder in ("gcode", "twin") for p in (ROOT / folder).rglob("*.py"))
 PYTHON = SOURCES + sorted(
-    p for folder in ("tests", "examples", "benchmarks", "docs") for p in (ROOT / folder).rglob("*.py")
+    p for folder in ("tests", "examples", "benchmarks", "docs", "tools") for p in (ROOT / folder).rglob("*.py")
 )
 PAGES = sorted((*ROOT.glob("*.md"), *(p for f in ("docs", "benchmarks", "tests") for p in (ROOT / f).rglob("*.md"))))
 MOST_LINES = 400
@@ -25,7 +25,7 @@ MOST_LINES = 400
 #: A name in backticks: words, perhaps joined by dots.
 _QUOTED = re.compile(r"`([^`\n]+)`")
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
-_FILE = re.compile(r"^(?:gcode|twin|tests|docs|examples|benchmarks|recordings)/[\w./]+$")
+_FILE = re.compile(r"^(?:gcode|twin|tests|docs|examples|benchmarks|recordings|tools)/[\w./]+$")
 
 
 def name(path: Path) -> str:

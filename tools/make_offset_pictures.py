@@ -1,6 +1,6 @@
 """Pictures of docs/offsets.md, on the torus example's part.
 
-python docs/make_offset_pictures.py
+python tools/make_offset_pictures.py
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from twin.workpiece.from_mesh import Solid, solid
 from twin.workpiece.stock import SliceSet
 
 ROOT = Path(__file__).parents[1]
-PICTURES = Path(__file__).with_name("pictures")
+PICTURES = ROOT / "docs" / "pictures"
 RADIUS_MM, PITCH_MM, CUT_MM = 4.0, 0.5, 19.75
 
 

@@ -1,6 +1,6 @@
 """Draws the pictures of docs/paths.md: a small torus scanned, contoured, and verified.
 
-python docs/make_path_pictures.py
+python tools/make_path_pictures.py
 """
 
 from __future__ import annotations
@@ -9,8 +9,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-DOCS = Path(__file__).parent
-sys.path.insert(0, str(DOCS.parent / "examples" / "torus"))
+ROOT = Path(__file__).parents[1]
+PICTURES = ROOT / "docs" / "pictures"
+sys.path.insert(0, str(ROOT / "examples" / "torus"))
 
 import make_torus  # noqa: E402
 
@@ -24,26 +25,13 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         stl, out, job = (str(Path(folder) / name) for name in ("torus.stl", "torus.nc", "torus.toml"))
         make_torus.write_stl(stl, make_torus.torus(256, 96, SMALL))
-        pictures = DOCS / "pictures"
         contour = ["--tool", "flat 3", "--axial-depth", "0.5", "--layers", "0", "--radial-depth", "1.2"]
         floor = ["--floor-z", "0", "--arcs", "0.005"]
-        twin(["paths", "contour", stl, *contour, *floor, "-o", out, "--plot", str(pictures / "contour_path.png")])
+        twin(["paths", "contour", stl, *contour, *floor, "-o", out, "--plot", str(PICTURES / "contour_path.png")])
         scan = ["--tool", "ball 3", "--pitch", "0.05", "--stepover", "0.2", "--arcs", "0.001", "--force"]
-        twin(["paths", "scan", stl, *scan, "-o", out, "--plot", str(pictures / "scan_path.png")])
-        twin(
-            [
-                "verify",
-                job,
-                stl,
-                "--pitch",
-                "0.1",
-                "--tolerance",
-                "0.01",
-                "--plot",
-                str(pictures / "verify.png"),
-                "--force",
-            ]
-        )
+        twin(["paths", "scan", stl, *scan, "-o", out, "--plot", str(PICTURES / "scan_path.png")])
+        check = ["--pitch", "0.1", "--tolerance", "0.01", "--force"]
+        twin(["verify", job, stl, *check, "--plot", str(PICTURES / "verify.png")])
 
 
 if __name__ == "__main__":

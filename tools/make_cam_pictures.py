@@ -1,6 +1,6 @@
 """Pictures of docs/drop-cutter.md and docs/dexel.md, on the example's mold.
 
-python docs/make_cam_pictures.py
+python tools/make_cam_pictures.py
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from twin.cam.surface.surface import Surface, surface_of
 from twin.tools.text import parse_tool
 
 ROOT = Path(__file__).parents[1]
-PICTURES = Path(__file__).with_name("pictures")
+PICTURES = ROOT / "docs" / "pictures"
 EXTENT = (0.0, 100.0, 0.0, 80.0)
 ROUGHING, FLAT_STEP_MM, LEVELS_MM = "flat 10", 5.0, np.arange(-2.0, -26.0, -2.0)
 

@@ -1,6 +1,6 @@
 """The picture of docs/compare.md: examples/ball_slot against a synthetic log made from it, no measurement.
 
-python docs/make_comparison_picture.py
+python tools/make_comparison_picture.py
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from twin.simulation.replay import Replay
 from twin.sinks.mcap_sink import McapSink
 
 ROOT = Path(__file__).parents[1]
-PICTURE = Path(__file__).with_name("pictures") / "compare.png"
+PICTURE = ROOT / "docs" / "pictures" / "compare.png"
 RATE_HZ, LATE_S = 10000.0, 0.3456
 
 

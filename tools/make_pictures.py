@@ -1,7 +1,7 @@
 """The pictures of the README and of docs/: replays of the examples as the rerun viewer shows them.
 
-    python docs/make_pictures.py            # all
-    python docs/make_pictures.py pocket     # one
+    python tools/make_pictures.py            # all
+    python tools/make_pictures.py pocket     # one
 
 Needs no screen; without a graphics card, Mesa's software Vulkan (Debian: mesa-vulkan-drivers, libegl1).
 """
@@ -29,7 +29,7 @@ from twin.sinks.rerun.layout import TIME
 from twin.sinks.rerun.sink import RerunSink
 
 ROOT = Path(__file__).parents[1]
-PICTURES = Path(__file__).with_name("pictures")
+PICTURES = ROOT / "docs" / "pictures"
 #: Picture, and the machine time that it shows as a share of the whole.
 EXAMPLES = {"ball_slot": 0.8, "pocket": 0.33, "casting": 0.45}
 SIZE = (1600, 1000)

@@ -2,7 +2,7 @@
 
 python -m benchmarks.speed --out docs/pictures > speed.json
 python -m benchmarks.surface > surface.json
-python docs/fill_performance.py speed.json surface.json
+python tools/fill_performance.py speed.json surface.json
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-PAGE = Path(__file__).parent / "performance.md"
+PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
 
 
 def table(speed: dict[str, Any]) -> str:
