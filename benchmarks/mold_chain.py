@@ -12,8 +12,8 @@ from pathlib import Path
 
 from benchmarks.mold import write_mold
 from benchmarks.report import report
-from twin.moldmaking import STAGES, MoldChain, mold_from_dict
-from twin.moldmaking.table import saved, times_table
+from twin.moldmaking import STAGES, MoldPlan, mold_from_dict
+from twin.moldmaking.figures import saved, times_table
 
 _JOB = Path(__file__).parents[1] / "examples" / "mold" / "job.toml"
 
@@ -21,7 +21,7 @@ _JOB = Path(__file__).parents[1] / "examples" / "mold" / "job.toml"
 def chain(triangles: int) -> dict[str, object]:
     with tempfile.TemporaryDirectory() as folder:
         write_mold(Path(folder) / "mold.stl", triangles)
-        made = MoldChain(mold_from_dict(tomllib.loads(_JOB.read_text()), folder))
+        made = MoldPlan(mold_from_dict(tomllib.loads(_JOB.read_text()), folder))
     lines = times_table(made)
     return {
         "triangles": len(made.part.triangles),

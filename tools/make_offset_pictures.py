@@ -89,7 +89,7 @@ def main() -> None:
     top.legend(loc="lower center", ncols=4, fontsize=8)
     figure.savefig(PICTURES / "offset_directions.png", dpi=110)
     fine = slice_part(mesh, 0.1)
-    write_plot(PICTURES / "torus_machinable.png", fine, {"ball 8": tool_reach(fine, ball)})
+    write_plot(PICTURES / "torus_reach.png", fine, {"ball 8": tool_reach(fine, ball)})
 
 
 if __name__ == "__main__":

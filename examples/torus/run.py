@@ -22,7 +22,7 @@ from gcode.report.plot import plot_path
 from twin.cam.path.to_nc import NcOptions, Operation, nc_events, write_nc
 from twin.cam.slices.sections import SlicedPart, slice_part
 from twin.cli.run import run as twin
-from twin.planning.paths import Ground, plan, prepare
+from twin.planning.paths import PlanSetup, plan, prepare
 from twin.planning.replay_job import replay_tables, write_replay_job
 from twin.planning.settings import settings_of
 
@@ -94,7 +94,7 @@ def main() -> int:
     job = program(fine, stl, out)
     said("what a ball of R4, and one of R3, cannot machine")
     pitch = ["--pitch", str(fine.pitch)]
-    twin(["machinable", str(stl), "--tool", "ball 8", "--tool", "ball 6", *pitch])
+    twin(["reach", str(stl), "--tool", "ball 8", "--tool", "ball 6", *pitch])
     said("replay: material, and forces where there is time for them")
     files = ["--mcap", str(out / "torus.mcap"), "--rrd", str(out / "torus.rrd"), "--force"]
     if twin(["replay", str(job), *files, *(["--no-forces"] if arguments.coarse else [])]):
@@ -122,14 +122,14 @@ def program(fine: Fineness, stl: Path, out: Path) -> Path:
         gouge_mm=0.02,
     )
     roughed = time.perf_counter()
-    finish, ground = operation(fine, part, stepover_mm=fine.finish_step, arcs_mm=fine.arcs, gouge_mm=fine.arcs)
+    finish, setup = operation(fine, part, stepover_mm=fine.finish_step, arcs_mm=fine.arcs, gouge_mm=fine.arcs)
     finished = time.perf_counter()
     said("slice, rough, finish")
     print(f"slicing {sliced - begin:.2f} s, roughing {roughed - sliced:.2f} s, finishing {finished - roughed:.2f} s")
     operations, options = [rough, finish], NcOptions(header=("torus on a plate",))
     lines = write_nc(out / "torus.nc", operations, options)
     print(f"{lines} lines in {out / 'torus.nc'}")
-    tables = replay_tables(out / "torus.nc", operations, options, ground.stock_mm, fine.replay_pitch, out)
+    tables = replay_tables(out / "torus.nc", operations, options, setup.stock_mm, fine.replay_pitch, out)
     # 100 minutes of cutting at 1 degree would fill 13 GB
     tables["simulation"] |= {"step_mm": fine.replay_step, "angle_step_deg": 5.0}
     write_replay_job(out / "job.toml", tables | {"cutting": CUTTING}, "Replays the torus example")
@@ -138,7 +138,7 @@ def program(fine: Fineness, stl: Path, out: Path) -> Path:
     return out / "job.toml"
 
 
-def operation(fine: Fineness, part: SlicedPart, **values: object) -> tuple[Operation, Ground]:
+def operation(fine: Fineness, part: SlicedPart, **values: object) -> tuple[Operation, PlanSetup]:
     """One scanning path with the tool and cutting conditions of the paper."""
     common = {
         "strategy": "scan",
@@ -151,8 +151,8 @@ def operation(fine: Fineness, part: SlicedPart, **values: object) -> tuple[Opera
         "spindle_rpm": 3600.0,
     }
     settings = settings_of({**common, **values}, "torus")
-    ground = prepare(settings, part)
-    return Operation(path=plan(settings, ground), spindle_rpm=settings.spindle_rpm), ground
+    setup = prepare(settings, part)
+    return Operation(path=plan(settings, setup), spindle_rpm=settings.spindle_rpm), setup
 
 
 def said(what: str) -> None:

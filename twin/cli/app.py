@@ -13,7 +13,7 @@ from twin.cli.commands.info import info
 from twin.cli.commands.mesh import mesh
 from twin.cli.commands.mold import mold
 from twin.cli.commands.paths import paths
-from twin.cli.commands.reach import machinable
+from twin.cli.commands.reach import reach
 from twin.cli.commands.replay import replay
 from twin.cli.commands.schema import schema
 from twin.cli.commands.verify import verify
@@ -38,13 +38,15 @@ for command in (
     compare,
     identify,
     mesh,
-    machinable,
+    reach,
     paths,
     verify,
     mold,
     schema,
 ):
     app.command()(command)
+# the former name of `twin reach`
+app.command("machinable", hidden=True)(reach)
 
 
 def _print_version(wanted: bool) -> None:

@@ -1,7 +1,7 @@
-"""Mold machining from an STL: roughing, semi-finishing of what is left, finishing, and the programs of all three."""
+"""Mold machining from an STL file: roughing, semi-finishing of rest material, finishing, and their NC programs."""
 
-from twin.moldmaking.chain import STAGES, MoldChain, Stage
 from twin.moldmaking.load import load_mold, mold_from_dict
 from twin.moldmaking.model import MoldJob
+from twin.moldmaking.stages import STAGES, MoldPlan, Stage
 
-__all__ = ["STAGES", "MoldChain", "MoldJob", "Stage", "load_mold", "mold_from_dict"]
+__all__ = ["STAGES", "MoldJob", "MoldPlan", "Stage", "load_mold", "mold_from_dict"]

@@ -1,4 +1,4 @@
-"""Mold jobs in: read, check everything that the file alone can tell, and say every mistake at once."""
+"""Read a mold job, check everything that can be checked without the part, and report every mistake at once."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def load_mold(path: str | PathLike[str]) -> MoldJob:
     """Read a mold job.
 
     Raises:
-        JobError: the file cannot be read, is no TOML, or has mistakes: all of them are in the message.
+        JobError: the file cannot be read, is not TOML, or has mistakes; the message lists all of them.
     """
     path = Path(path)
     try:
@@ -38,7 +38,7 @@ def load_mold(path: str | PathLike[str]) -> MoldJob:
 
 
 def mold_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") -> MoldJob:
-    """Make a job from tables as `tomllib` gives them.
+    """Make a mold job from tables as `tomllib` returns them.
 
     Raises:
         JobError: see `load_mold`.
@@ -47,7 +47,7 @@ def mold_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") -
 
 
 def shape_of(job: MoldFile, number: int) -> ToolShape:
-    """The cutting part of a tool."""
+    """Shape of the cutting part of a tool."""
     tool = next(t for t in job.tools if t.number == number)
     return tool_shape(
         tool.kind, tool.diameter_mm, tool.flute_length_mm, tool.corner_radius_mm or 0.0, tool.taper_deg or 0.0
@@ -75,13 +75,13 @@ def _joined(file: MoldFile, path: Path) -> MoldJob:
 
 
 def _tool_problems(file: MoldFile) -> Iterator[Problem]:
-    """Numbers that differ, and shapes that can be."""
+    """Tools with duplicate numbers or impossible shapes."""
     if not file.tools:
         yield wrong(("tools",), [], "at least one table [[tools]]")
     seen: set[int] = set()
     for index, tool in enumerate(file.tools):
         if tool.number in seen:
-            yield wrong(("tools", index, "number"), tool.number, "a number of its own")
+            yield wrong(("tools", index, "number"), tool.number, "a unique number")
         seen.add(tool.number)
         try:
             shape_of(file, tool.number)
@@ -90,7 +90,7 @@ def _tool_problems(file: MoldFile) -> Iterator[Problem]:
 
 
 def _stage_problems(file: MoldFile) -> Iterator[Problem]:
-    """Tools that are there and get smaller, depths that suit them, allowances that shrink."""
+    """Tools that are missing or too large, depths beyond the tool radius, allowances that grow, and no step-over."""
     known = {t.number: t for t in file.tools}
     last: tuple[str, float] | None = None
     for name in _STAGES:
@@ -101,7 +101,7 @@ def _stage_problems(file: MoldFile) -> Iterator[Problem]:
             continue
         diameter = known[stage.tool].diameter_mm
         if last is not None and diameter > last[1]:
-            expected = f"a tool no larger than that of [{last[0]}], D{last[1]:g}: it would reach nothing new"
+            expected = f"a tool no larger than that of [{last[0]}], D{last[1]:g}: it would reach nothing more"
             yield wrong((name, "tool"), stage.tool, f"{expected}, got D{diameter:g}")
         last = (name, diameter)
         radial = getattr(stage, "radial_depth_mm", None)
@@ -110,14 +110,16 @@ def _stage_problems(file: MoldFile) -> Iterator[Problem]:
                 (name, "radial_depth_mm"), radial, f"at most {0.5 * diameter:g}, the radius of tool {stage.tool}"
             )
     if file.semi.allowance_mm > file.rough.allowance_mm:
-        expected = f"at most rough.allowance_mm = {file.rough.allowance_mm:g}, what roughing leaves"
+        expected = f"at most rough.allowance_mm = {file.rough.allowance_mm:g}, the allowance of roughing"
         yield wrong(("semi", "allowance_mm"), file.semi.allowance_mm, expected)
     if (file.finish.stepover_mm is None) == (file.finish.scallop_mm is None):
-        yield missing(("finish", "stepover_mm"), "either stepover_mm or scallop_mm, the distance of the rows")
+        yield missing(
+            ("finish", "stepover_mm"), "either stepover_mm or scallop_mm, which set the distance between rows"
+        )
 
 
 def _stock_problems(file: MoldFile, folder: Path) -> Iterator[Problem]:
-    """A part that is there, a block with an extent."""
+    """A part file that is missing, or a stock without extent."""
     stl = folder / file.part.stl
     if not stl.is_file():
         why = "is a folder" if stl.is_dir() else "does not exist"
@@ -128,4 +130,4 @@ def _stock_problems(file: MoldFile, folder: Path) -> Iterator[Problem]:
             if not low < high:
                 yield wrong(("stock", "box_mm", "max"), high, f"above {low:g} along {axis}")
         if file.stock.top_mm:
-            yield wrong(("stock", "top_mm"), file.stock.top_mm, "to be left out where box_mm is given")
+            yield wrong(("stock", "top_mm"), file.stock.top_mm, "no value where box_mm is given")

@@ -1,11 +1,12 @@
-"""The keys of a mold job, one model a table; tools are those of a replay's job file."""
+"""The keys of a mold job, one model per table; tools are those of a replay's job file."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, Strict
+from pydantic import Field, Strict, model_validator
 
 from twin.cam.passes.roughing import StageFeeds
 from twin.cam.path.machining_time import Dynamics
@@ -16,34 +17,34 @@ class Part(Table):
     """The part to be made."""
 
     stl: FilePath = Field(description="STL file of a closed solid, relative to the job file's folder")
-    scale: float = Field(default=1.0, gt=0.0, description="mm a unit of the STL file, 25.4 for inches")
+    scale: float = Field(default=1.0, gt=0.0, description="mm per unit of the STL file, 25.4 for inches")
     offset_mm: Point = Field(default=(0.0, 0.0, 0.0), description="added to the STL file's points after scaling, mm")
 
 
 class MoldStock(Table):
-    """The block that the part is made from."""
+    """The stock that the part is made from."""
 
-    box_mm: Box | None = Field(default=None, description="the block; the part's own box if not given")
-    top_mm: float = Field(default=0.0, ge=0.0, description="material on top of the part's box where no block is given")
+    box_mm: Box | None = Field(default=None, description="the stock's box; the part's box if not given")
+    top_mm: float = Field(default=0.0, ge=0.0, description="stock above the part's box without box_mm")
 
 
 class MoldMachine(Table):
     """The machine."""
 
     dialect: Literal["fanuc", "haas", "linuxcnc", "grbl"] = Field(
-        default="fanuc", description="control that programs are written for"
+        default="fanuc", description="control that the programs are written for"
     )
-    rapid_mm_min: float = Field(default=30_000.0, gt=0.0, description="speed along the path of rapid motions, mm/min")
-    acceleration_mm_s2: float = Field(default=3_000.0, gt=0.0, description="acceleration in cuts, mm/s2")
-    rapid_mm_s2: float = Field(default=5_000.0, gt=0.0, description="acceleration of rapid motions, mm/s2")
-    corner_mm: float = Field(default=0.01, gt=0.0, description="how far corners may be rounded off, mm")
-    safe_mm: float = Field(default=10.0, gt=0.0, description="height of rapid motions above the stock")
+    rapid_mm_min: float = Field(default=30_000.0, gt=0.0, description="rapid traverse rate along the path, mm/min")
+    acceleration_mm_s2: float = Field(default=3_000.0, gt=0.0, description="acceleration at feed, mm/s2")
+    rapid_mm_s2: float = Field(default=5_000.0, gt=0.0, description="acceleration at rapid traverse, mm/s2")
+    corner_mm: float = Field(default=0.01, gt=0.0, description="corner blending tolerance, mm")
+    safe_mm: float = Field(default=10.0, gt=0.0, description="height of rapids above the stock")
     clearance_mm: float = Field(default=1.0, gt=0.0, description="height above material where rapids down end")
     tool_change_s: float = Field(default=4.0, ge=0.0, description="time of one tool change, s")
 
     @property
     def dynamics(self) -> Dynamics:
-        """What machining times are computed with."""
+        """Dynamics that machining times are computed with."""
         return Dynamics(
             rapid_mm_min=self.rapid_mm_min,
             acceleration_mm_s2=self.acceleration_mm_s2,
@@ -53,18 +54,22 @@ class MoldMachine(Table):
 
 
 class StageTable(Table):
-    """What every stage has."""
+    """Keys of every stage."""
 
     tool: int = Field(ge=1, description="number of the tool")
     spindle_rpm: float = Field(gt=0.0, description="spindle speed, rpm")
-    feed_mm_min: float = Field(gt=0.0, description="feed of cuts, mm/min")
-    plunge_mm_min: float = Field(gt=0.0, description="feed straight down, mm/min")
-    ramp_mm_min: float | None = Field(default=None, gt=0.0, description="feed of helices and ramps; half the feed")
-    link_mm_min: float | None = Field(default=None, gt=0.0, description="feed through cleared places; the feed of cuts")
+    feed_mm_min: float = Field(gt=0.0, description="cutting feed, mm/min")
+    plunge_mm_min: float = Field(gt=0.0, description="plunge feed, mm/min")
+    ramp_mm_min: float | None = Field(
+        default=None, gt=0.0, description="feed of helices and ramps; half the cutting feed if not given"
+    )
+    link_mm_min: float | None = Field(
+        default=None, gt=0.0, description="feed of links in cleared areas; the cutting feed if not given"
+    )
 
     @property
     def feeds(self) -> StageFeeds:
-        """Feeds as paths want them."""
+        """Feeds of the stage's moves."""
         return StageFeeds(
             cut=self.feed_mm_min,
             plunge=self.plunge_mm_min,
@@ -76,63 +81,86 @@ class StageTable(Table):
 class Rough(StageTable):
     """Contour roughing."""
 
-    axial_depth_mm: float = Field(gt=0.0, description="distance of the levels")
-    radial_depth_mm: float = Field(gt=0.0, description="distance of the rings, at most the tool's radius")
-    allowance_mm: float = Field(ge=0.0, description="left on the part")
-    resolution_mm: float = Field(default=0.5, gt=0.0, description="longest piece of a contour while it is worked on")
+    axial_depth_mm: float = Field(gt=0.0, description="axial depth of cut: distance between levels")
+    radial_depth_mm: float = Field(
+        gt=0.0, description="radial depth of cut: distance between rings, at most the tool radius"
+    )
+    allowance_mm: float = Field(ge=0.0, description="allowance: stock to leave on the part")
+    resolution_mm: float = Field(default=0.5, gt=0.0, description="longest piece of a contour during computation")
     ramp_deg: float = Field(default=3.0, gt=0.0, lt=45.0, description="steepest angle of helices and ramps")
 
 
 class Semi(StageTable):
-    """Semi-finishing of what roughing left."""
+    """Semi-finishing of the rest material after roughing."""
 
-    axial_depth_mm: float = Field(gt=0.0, description="distance of the levels")
-    radial_depth_mm: float = Field(gt=0.0, description="distance of the rings, at most the tool's radius")
-    allowance_mm: float = Field(ge=0.0, description="left on the part")
-    least_mm: float = Field(default=0.1, gt=0.0, description="thinner material is left to finishing")
-    resolution_mm: float = Field(default=0.4, gt=0.0, description="distance of the places that are looked at")
-    direction: Literal["both", "climb"] = Field(default="both", description="whether cuts may run either way")
-    method: Literal["greedy", "2-opt", "ils"] = Field(default="ils", description="search for the order of cuts")
-    seed: int = Field(default=1, ge=0, description="of the search; equal seeds give equal programs")
-    iterations: int | None = Field(default=None, ge=0, description="of the search at each level; 5 a cut, at least 500")
+    axial_depth_mm: float = Field(gt=0.0, description="axial depth of cut: distance between levels")
+    radial_depth_mm: float = Field(
+        gt=0.0, description="radial depth of cut: distance between rings, at most the tool radius"
+    )
+    allowance_mm: float = Field(ge=0.0, description="allowance: stock to leave on the part")
+    least_mm: float = Field(default=0.1, gt=0.0, description="thinner rest material is left to finishing")
+    resolution_mm: float = Field(
+        default=0.4, gt=0.0, description="distance of the positions where rest material is checked"
+    )
+    direction: Literal["both", "climb"] = Field(
+        default="both", description="both: climb and conventional cuts; climb: climb cuts only"
+    )
+    method: Literal["greedy", "2-opt", "ils"] = Field(default="ils", description="search method for the order of cuts")
+    seed: int = Field(default=1, ge=0, description="seed of the search; equal seeds give equal programs")
+    iterations: int | None = Field(
+        default=None, ge=0, description="iterations of the search at each level; 5 per cut, at least 500, if not given"
+    )
     budget_s: float | None = Field(
-        default=None, gt=0.0, description="longest search at each level, s; with it, programs depend on the machine"
+        default=None, gt=0.0, description="longest search time at each level; with it, programs depend on the computer"
     )
 
 
 class Finish(StageTable):
-    """Finishing by scanning lines."""
+    """Finishing by rows, and by level lines on steep faces."""
 
-    stepover_mm: float | None = Field(default=None, gt=0.0, description="distance of the rows")
-    scallop_mm: float | None = Field(default=None, gt=0.0, description="height of scallops on level ground, instead")
-    chord_mm: float = Field(default=0.005, gt=0.0, description="how far the path may lie from the exact one")
-    pitch_mm: float = Field(default=0.3, gt=0.0, description="distance of the places dropped first along a row")
-    direction: Literal["x", "y"] = Field(default="x", description="direction of the rows")
-    steep_deg: float | None = Field(
-        default=None, gt=0.0, lt=90.0, description="surfaces steeper than this get level lines instead of rows"
+    stepover_mm: float | None = Field(default=None, gt=0.0, description="step-over: distance between rows")
+    scallop_mm: float | None = Field(
+        default=None, gt=0.0, description="scallop height on level faces, instead of the step-over"
     )
-    least_mm: float = Field(default=0.01, gt=0.0, description="thinner material is no reason to go there")
+    chord_mm: float = Field(default=0.005, gt=0.0, description="chord tolerance: largest deviation from the exact path")
+    pitch_mm: float = Field(default=0.3, gt=0.0, description="distance of the first drop-cutter positions along a row")
+    direction: Literal["x", "y"] = Field(default="x", description="axis that the rows run along")
+    steep_deg: float | None = Field(
+        default=None, gt=0.0, lt=90.0, description="steeper faces are cut along level lines; none if not given"
+    )
+    least_mm: float = Field(default=0.01, gt=0.0, description="thinner rest material is not cut")
 
 
 class Compare(Table):
-    """What the chain is compared with."""
+    """Comparison with raster roughing and raster semi-finishing; `conventional` is the key's former name."""
 
-    conventional: bool = Field(default=True, description="whether scanning lines throughout are computed as well")
+    raster_baseline: bool = Field(default=True, description="whether the raster baseline is computed as well")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _former_name(cls, values: Any) -> Any:
+        if isinstance(values, Mapping) and "conventional" in values and "raster_baseline" not in values:
+            return {("raster_baseline" if key == "conventional" else key): v for key, v in values.items()}
+        return values
 
 
 class MoldOutput(Table):
-    """Where programs go."""
+    """Files of the programs."""
 
-    folder: FilePath = Field(default=Path("programs"), description="folder of programs, relative to the job file's")
-    name: str = Field(default="mold", pattern=r"^[A-Za-z0-9_\-]+$", description="first word of their names")
-    dexel_mm: float = Field(default=0.2, gt=0.0, description="distance of the dexels of the stock between stages")
+    folder: FilePath = Field(
+        default=Path("programs"), description="folder of the programs, relative to the job file's folder"
+    )
+    name: str = Field(default="mold", pattern=r"^[A-Za-z0-9_\-]+$", description="first part of their file names")
+    dexel_mm: float = Field(
+        default=0.2, gt=0.0, description="distance of the dexels that keep the stock between stages"
+    )
 
 
 class MoldFile(Table):
-    """A mold: part, stock, tools, and what each stage does."""
+    """A mold: part, stock, machine, tools and stages."""
 
     part: Part = Field(description="the part")
-    stock: MoldStock = Field(default_factory=MoldStock, description="the block")
+    stock: MoldStock = Field(default_factory=MoldStock, description="the stock")
     machine: MoldMachine = Field(default_factory=MoldMachine, description="the machine")
     tools: Annotated[tuple[Tool, ...], Strict(False)] = Field(
         description="the tools, each under [[tools]], at least one", json_schema_extra={"minItems": 1}
@@ -140,8 +168,8 @@ class MoldFile(Table):
     rough: Rough = Field(description="roughing")
     semi: Semi = Field(description="semi-finishing")
     finish: Finish = Field(description="finishing")
-    compare: Compare = Field(default_factory=Compare, description="what the chain is compared with")
-    output: MoldOutput = Field(default_factory=MoldOutput, description="where programs go")
+    compare: Compare = Field(default_factory=Compare, description="comparison with a raster baseline")
+    output: MoldOutput = Field(default_factory=MoldOutput, description="files of the programs")
 
 
 class MoldJob(MoldFile):

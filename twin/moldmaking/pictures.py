@@ -1,4 +1,4 @@
-"""Pictures of a mold's stages: paths from above, and what each stage leaves on the part."""
+"""Pictures of a mold's stages: tool paths from above, and the rest material after each stage."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.cam.path.toolpath import MoveKind, ToolPath
 from twin.cam.surface.drop_cutter import DropCutter
-from twin.moldmaking.chain import MoldChain, Stage, StageResult
+from twin.moldmaking.stages import MoldPlan, Stage, StageResult
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,33 +19,33 @@ if TYPE_CHECKING:
 COLOURS = {"cut": "#3c78c8", "rapid": "#d03c30", "link": "#3a9d5a", "helix": "#e0902a", "ramp": "#e0902a"}
 _OTHER = "#8a50b0"
 _DPI = 120
-#: A move that ends no farther from a level than this belongs to it, mm.
+#: A move that ends within this distance of a level belongs to it, mm.
 _AT_MM = 1e-3
-#: Chords of arcs in pictures, mm.
+#: Chord error of arcs in pictures, mm.
 _CHORD_MM = 0.02
 
 
 def _lines_by_kind(path: ToolPath) -> dict[str, list[FloatArray]]:
-    """A path as polylines, by the kind of its moves."""
+    """A path as polylines, by kind of move."""
     lines: dict[str, list[FloatArray]] = {}
     for move in path.moves:
         lines.setdefault(str(move.kind), []).append(move.chords_mm(_CHORD_MM))
     return lines
 
 
-def draw(chain: MoldChain, stages: Sequence[Stage], folder: Path) -> list[Path]:
-    """One picture a stage: its path, one level of it in roughing and semi-finishing, and the height of what it leaves.
+def draw(plan: MoldPlan, stages: Sequence[Stage], folder: Path) -> list[Path]:
+    """Draw one picture per stage: the path, one level of roughing or semi-finishing, and the rest material afterwards.
 
     Returns:
-        The files, `.png`.
+        The PNG files.
     """
     from matplotlib.figure import Figure
 
     folder.mkdir(parents=True, exist_ok=True)
-    needle = DropCutter(chain.surface, None)
+    needle = DropCutter(plan.surface, None)
     files: list[Path] = []
     for stage in stages:
-        result = chain.stage(stage)
+        result = plan.stage(stage)
         level = None if stage == "finish" else _middle_level(result.path)
         count = 2 if level is None else 3
         figure = Figure(figsize=(6.5 * count, 5.6), layout="constrained")
@@ -57,20 +57,20 @@ def draw(chain: MoldChain, stages: Sequence[Stage], folder: Path) -> list[Path]:
         _draw_rest(figure, axes[-1], result, needle)
         minutes = result.time.total_s / 60.0
         axes[0].set_title(f"{stage}: {result.path.name}, {minutes:.1f} min")
-        file = folder / f"{chain.job.output.name}_{stage}.png"
+        file = folder / f"{plan.job.output.name}_{stage}.png"
         figure.savefig(file, dpi=_DPI)
         files.append(file)
     return files
 
 
 def _middle_level(path: ToolPath) -> float:
-    """The level at half of all cutting moves, from the top."""
+    """Height of the median cutting move."""
     heights = sorted(float(m.end_mm[2]) for m in path.of_kind(MoveKind.CUT))
     return heights[len(heights) // 2]
 
 
 def draw_path(axes: Axes, path: ToolPath, low_z_mm: float = -np.inf, high_z_mm: float = np.inf) -> None:
-    """A path from above, coloured by kind; between two heights only where they are given."""
+    """Draw a path from above, coloured by kind of move, and only between two heights where they are given."""
     from matplotlib.collections import LineCollection
 
     for kind, lines in _lines_by_kind(path).items():
@@ -91,6 +91,6 @@ def _draw_rest(figure: Any, axes: Axes, result: StageResult, needle: DropCutter)
     most = max(float(np.percentile(above, 99.5)), 1e-3)
     extent = (float(stock.low_mm[0]), float(stock.high_mm[0]), float(stock.low_mm[1]), float(stock.high_mm[1]))
     image = axes.imshow(above.T, origin="lower", extent=extent, vmin=0.0, vmax=most, cmap="viridis")
-    figure.colorbar(image, ax=axes, label="left on the part, mm along z")
+    figure.colorbar(image, ax=axes, label="rest material, mm along z")
     axes.set_title(f"after {result.stage}")
     axes.set_xlabel("x, mm")

@@ -1,4 +1,4 @@
-"""How well slices at a pitch know an inflated part."""
+"""How accurately slices at a pitch describe an inflated part."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from twin.cam.slices.sections import Sections, slanted_triangles
 from twin.cam.slices.steep_sections import gaps_of, slopes
-from twin.planning.paths import Ground
+from twin.planning.paths import PlanSetup
 from twin.planning.settings import PathSettings
 from twin.tools.shape import ToolShape
 from twin.workpiece.from_mesh import Solid
@@ -15,23 +15,23 @@ from twin.workpiece.from_mesh import Solid
 _SHARE = 0.99
 
 
-def pitch_bound_mm(settings: PathSettings, ground: Ground) -> float:
-    """See `sag_mm`, for the sections that a path is made from.
+def pitch_bound_mm(settings: PathSettings, setup: PlanSetup) -> float:
+    """Bound on the error between slices, mm; see `sag_mm`.
 
-    A level of a flat tool needs nothing but the section at its own height, which is exact; rows of the drop-cutter need
-    no slices.
+    It is 0 for levels of a flat tool, which need only the section at their own height, and for rows of the drop-cutter,
+    which need no slices.
     """
-    if settings.exact or (settings.strategy == "contour" and ground.tool.corner_mm == 0.0):
+    if settings.exact or (settings.strategy == "contour" and setup.tool.corner_mm == 0.0):
         return 0.0
-    return sag_mm(ground.part.mesh, ground.tool, ground.sections)
+    return sag_mm(setup.part.mesh, setup.tool, setup.sections)
 
 
 def sag_mm(part: Solid, tool: ToolShape, sections: Sections) -> float:
-    """How far a tool may sink between two sections, for 99 % of the surface that does not lie across their axis.
+    """How far a tool may sink between two sections, mm, for 99 % of the surface that is not square to their axis.
 
     Sections d apart meet a face at an angle a to them at distances s = d / sin a along the face. A tool of radius r
-    that rests on lines so far apart sinks in between by r - sqrt(r^2 - s^2 / 4), and never by more than d cos a, for
-    the next section behind the place is at most d away along the axis.
+    that rests on two lines at distance s sinks in between by r - sqrt(r^2 - s^2 / 4), and never by more than d cos a,
+    as the next section is at most d away along the axis.
     """
     which, vectors = slanted_triangles(part, sections.axis)
     if len(which) == 0:

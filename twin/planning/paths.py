@@ -6,9 +6,10 @@ path = plan(settings, part)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
@@ -36,39 +37,40 @@ from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import Solid
 
-#: Told of how far the work has come: what is done, and how much of all.
-Report = Callable[[str, float], None]
-#: Chords of inflated sections stand this part of the pitch inside their arcs.
+#: Called while work goes on: the current task, and the share of it that is done, 0 to 1.
+Progress: TypeAlias = Callable[[str, float], None]
+#: Chord error of inflated sections, as a part of the pitch; chords lie inside their arcs.
 _CHORD_PITCHES = 0.005
-#: Chords of rows stand no farther off the tip's true line; or this part of the allowance.
+#: Chord error of rows: at most this, mm, or this part of the allowance, whichever is larger.
 _CHORD_MM, _CHORD_ALLOWANCE = 0.0005, 0.05
-#: Samples that rows begin with are a slice pitch apart; no closer than this part of the radius of ball or corner arc,
-#: for the tool's own round hides what is finer, and places are added where chords would not do.
-_PLACES_APART = 0.0125
-#: Planes that are inflated between two reports.
+#: Rows start with points a slice pitch apart, but no closer than this part of the ball's or corner's radius: the tool's
+#: own rounding hides finer detail, and points are added where the chord error is too large.
+_POINTS_APART = 0.0125
+#: Planes that are inflated between two progress calls.
 _PLANES_TOGETHER = 32
-#: What a contour's overhang lacks to the tool's radius, and a few chords: flush sides of the stock are left alone.
-_SHORT = 1e-3
-#: Levels are asked this much higher, for at the very height of a flat face the tool may stand on it.
+#: The default overhang of contours is the tool's radius less this, mm, and a few chords: flush sides of the stock are
+#: not machined.
+_SHORT_MM = 1e-3
+#: Sections are taken this much above each level, so that the tool may stand on a flat face at the level itself.
 _LIFT_MM = 1e-6
-#: Tips higher than this above the stock are in air, and rows are broken there.
+#: Where the tip is more than this above the stock it is in air, and rows are interrupted there.
 _AIR_MM = 0.01
-#: Rapids are this much above the stock, unless told otherwise.
+#: Default height of rapids above the stock.
 SAFE_ABOVE_MM = 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Ground:
-    """What a path is planned on.
+class PlanSetup:
+    """A part made ready for planning.
 
     Attributes:
-        tool: its shape.
-        part: the part's slices.
-        sections: those that the path is made from, with more of them where that pays.
-        region_mm: where the tip may be, lower and upper corner, shape (2, 2).
-        overhang_mm: how far it may go beyond that.
-        stock_mm: the stock's box, shape (2, 3).
-        floor_mm: lowest tip.
+        tool: the tool's shape.
+        part: the sliced part.
+        sections: the sections that the path is made from, closer together where the part is steep along them.
+        region_mm: boundary of the tool tip, lower and upper corner, shape (2, 2).
+        overhang_mm: how far the tip may go beyond the boundary.
+        stock_mm: the stock's box, lower and upper corner, shape (2, 3).
+        floor_mm: lowest height of the tip.
         safe_mm: height of rapids.
     """
 
@@ -82,34 +84,34 @@ class Ground:
     safe_mm: float
 
 
-def _quiet(what: str, share: float) -> None:
-    """No reports."""
+def silent(task: str, share: float) -> None:
+    """No progress display."""
 
 
-def prepare(settings: PathSettings, part: Path | str | SlicedPart, report: Report = _quiet) -> Ground:
-    """Read and slice the part, and settle what depends on its box.
+def prepare(settings: PathSettings, part: Path | str | SlicedPart, progress: Progress = silent) -> PlanSetup:
+    """Read and slice the part, and determine everything that depends on its box.
 
     Raises:
-        MeshError, StockError, ToolError: no solid, a pitch that cannot be, a text that names no tool.
-        ToolPathError: a safe height below the stock's top.
+        MeshError, StockError, ToolError: the mesh is not a closed solid, an impossible pitch, an invalid tool text.
+        ToolPathError: a step-over or depth too large for the tool, or a safe height below the stock's top.
     """
     tool = parse_tool(settings.tool)
     _check_tool(settings, tool)
-    report("slicing", 0.0)
+    progress("slicing", 0.0)
     sliced = part if isinstance(part, SlicedPart) else slice_part(part, settings.pitch_mm)
     box = np.array([sliced.slices.low_mm, sliced.slices.high_mm])
     stock = np.reshape(settings.stock_mm, (2, 3)) if settings.stock_mm else box
     scan = settings.strategy == "scan"
     region = np.reshape(settings.region_mm, (2, 2)) if settings.region_mm else (box if scan else stock)[:, :2]
-    default = 0.0 if scan else tool.max_radius_mm - _SHORT - 4.0 * _CHORD_PITCHES * settings.pitch_mm
+    default = 0.0 if scan else tool.max_radius_mm - _SHORT_MM - 4.0 * _CHORD_PITCHES * settings.pitch_mm
     overhang = default if settings.overhang_mm is None else settings.overhang_mm
     top = float(stock[1, 2])
     safe = top + max(SAFE_ABOVE_MM, settings.clearance_mm) if settings.safe_z_mm is None else settings.safe_z_mm
     if safe < top + settings.clearance_mm:
         raise ToolPathError(
-            f"safe_z_mm = {safe:g}: expected at least {top + settings.clearance_mm:g}, clearance above the stock's top"
+            f"safe_z_mm = {safe:g}: expected at least {top + settings.clearance_mm:g}, stock top plus clearance"
         )
-    return Ground(
+    return PlanSetup(
         tool=tool,
         part=sliced,
         sections=_sections(settings, sliced, tool),
@@ -122,18 +124,18 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, report: Repor
 
 
 def _sections(settings: PathSettings, part: SlicedPart, tool: ToolShape) -> Sections:
-    """Sections across the rows, or levels; more of them where the part runs along them, unless that changes nothing."""
+    """Sections across the rows, or level sections; closer together where the part is steep along them."""
     axis = ACROSS[settings.direction] if settings.strategy == "scan" else 2
     level = settings.strategy == "contour" and tool.corner_mm + settings.allowance_mm == 0.0
     return part.sections(axis) if settings.exact or level else with_steep_sections(part, axis)
 
 
 def _check_tool(settings: PathSettings, tool: ToolShape) -> None:
-    """Refuses a taper tool for rows from slices, and steps that leave walls between passes.
+    """Refuse a taper tool for rows from slices, and steps that leave ridges between passes.
 
     Raises:
-        ToolPathError: one of these: a step-over above the diameter, layers that clear an area farther apart than the
-            radius.
+        ToolPathError: one of these: a step-over above the diameter, a radial depth above the radius where an area is
+            cleared.
     """
     if settings.strategy == "scan" and tool.taper_rad > 0.0 and not settings.exact:
         raise ToolPathError(
@@ -149,129 +151,129 @@ def _check_tool(settings: PathSettings, tool: ToolShape) -> None:
         raise ToolPathError(f"radial_depth_mm = {radial:g}: expected at most {most:g}, {why}")
 
 
-def plan(settings: PathSettings, ground: Ground, report: Report = _quiet) -> ToolPath:
-    """The tool path; one without moves where the tool can cut nothing."""
-    passes, way = (_scan if settings.strategy == "scan" else _contour)(settings, ground, report)
-    report("linking", 1.0)
-    moves = link(passes, _link_options(settings, ground), way)
-    made = ToolPath(moves=moves, tool=ground.tool, name=_name(settings), notes=_notes(settings, ground))
+def plan(settings: PathSettings, setup: PlanSetup, progress: Progress = silent) -> ToolPath:
+    """The tool path; without moves where the tool cannot cut anything."""
+    passes, planner = (_scan if settings.strategy == "scan" else _contour)(settings, setup, progress)
+    progress("linking", 1.0)
+    moves = link(passes, _link_options(settings, setup), planner)
+    made = ToolPath(moves=moves, tool=setup.tool, name=_name(settings), notes=_notes(settings, setup))
     return _fitted(made, settings)
 
 
-def _scan(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple[Pass, ...], LinkPlanner]:
-    """Rows of all layers, from the outermost to the part's own."""
+def _scan(settings: PathSettings, setup: PlanSetup, progress: Progress) -> tuple[tuple[Pass, ...], LinkPlanner]:
+    """Rows of all layers, from the outermost to the one on the part."""
     along, across = (0, 1) if settings.direction == "x" else (1, 0)
-    low, high = ground.region_mm + ground.overhang_mm * np.array([[-1.0], [1.0]])
+    low, high = setup.region_mm + setup.overhang_mm * np.array([[-1.0], [1.0]])
     at = row_positions(float(low[across]), float(high[across]), settings.stepover_mm)
-    report("profiles", 0.0)
-    apart = max(settings.pitch_mm, _PLACES_APART * ground.tool.corner_mm)
-    places = Samples.between(float(low[along]), float(high[along]), apart)
-    way = SurfaceLinkPlanner(
-        lambda: _surface(ground.part.mesh),
-        ground.tool,
+    progress("profiles", 0.0)
+    apart = max(settings.pitch_mm, _POINTS_APART * setup.tool.corner_mm)
+    samples = Samples.between(float(low[along]), float(high[along]), apart)
+    planner = SurfaceLinkPlanner(
+        lambda: _surface(setup.part.mesh),
+        setup.tool,
         allowance_mm=settings.allowance_mm,
         remaining_mm=settings.remaining_mm,
-        floor_mm=ground.floor_mm,
-        top_mm=float(ground.stock_mm[1, 2]),
+        floor_mm=setup.floor_mm,
+        top_mm=float(setup.stock_mm[1, 2]),
     )
-    lines_of = _rows(settings, ground, way, at, places)
+    lines_of = _rows(settings, setup, planner, at, samples)
     passes: list[Pass] = []
     for layer in reversed(range(settings.layers)):
-        report("rows", 1.0 - (layer + 1) / settings.layers)
+        progress("rows", 1.0 - (layer + 1) / settings.layers)
         left = settings.allowance_mm + layer * settings.axial_depth_mm
         rows = Rows(direction=settings.direction, at_mm=at, lines_mm=lines_of(left))
         options = ScanOptions(
-            top_mm=float(ground.stock_mm[1, 2]) + _AIR_MM,
+            top_mm=float(setup.stock_mm[1, 2]) + _AIR_MM,
             zigzag=settings.zigzag,
             climb=settings.climb,
             layer=layer,
-            approach_mm=_approach(ground, along, float(low[along]), float(high[along]), settings.clearance_mm),
+            approach_mm=_approach(setup, along, float(low[along]), float(high[along]), settings.clearance_mm),
         )
         passes += scan_passes(rows, options)
     if settings.remaining_mm is not None and settings.layers == 1:
-        passes = [replace(p, top_mm=way.clear_z_mm(p.points_mm[0], p.points_mm[0])) for p in passes]
-    return tuple(passes), way
+        passes = [replace(p, top_mm=planner.clear_z_mm(p.points_mm[0], p.points_mm[0])) for p in passes]
+    return tuple(passes), planner
 
 
 def _rows(
-    settings: PathSettings, ground: Ground, way: SurfaceLinkPlanner, at: FloatArray, places: Samples
+    settings: PathSettings, setup: PlanSetup, planner: SurfaceLinkPlanner, at: FloatArray, samples: Samples
 ) -> Callable[[float], list[FloatArray]]:
-    """Makes the rows' lines from the material to be left: from slices, or from the triangles themselves."""
+    """A function that makes cutter-location lines for an allowance, from slices or from the triangles."""
     chord = max(_CHORD_MM, _CHORD_ALLOWANCE * settings.allowance_mm)
     if settings.exact:
         along = 0 if settings.direction == "x" else 1
         return lambda left: drop_lines(
-            lambda xy: way.lowest_mm(xy, left), along, at, places, floor_mm=ground.floor_mm + left, chord_mm=chord
+            lambda xy: planner.lowest_mm(xy, left), along, at, samples, floor_mm=setup.floor_mm + left, chord_mm=chord
         )
-    profiles = Profiles.of(ground.sections)
-    element = StructuringElement.tool(ground.tool)
+    profiles = Profiles.of(setup.sections)
+    element = StructuringElement.tool(setup.tool)
     return lambda left: cl_lines(
-        profiles, element, at, places, ground.floor_mm + left, allowance_mm=left, chord_mm=chord
+        profiles, element, at, samples, setup.floor_mm + left, allowance_mm=left, chord_mm=chord
     )
 
 
 def _surface(mesh: Solid) -> Surface:
-    """The part's surface; vertices that only triangles without area had are left out."""
+    """The part's surface, without vertices that only triangles without area used."""
     used = mesh.used
     return surface_of_mesh(mesh.vertices_mm[used], (np.cumsum(used) - 1)[mesh.triangles])
 
 
 def _approach(
-    ground: Ground, along: int, low: float, high: float, clearance_mm: float
+    setup: PlanSetup, along: int, low: float, high: float, clearance_mm: float
 ) -> tuple[float | None, float | None]:
-    """Where the tool is clear of the stock beside the ends of rows; None where rows end inside the stock."""
-    reach = ground.tool.max_radius_mm + clearance_mm
-    first, last = ground.stock_mm[:, along]
+    """Positions clear of the stock at both ends of the rows; None where rows end inside the stock."""
+    reach = setup.tool.max_radius_mm + clearance_mm
+    first, last = setup.stock_mm[:, along]
     return (
-        float(min(low, first - reach)) if low <= first + _SHORT else None,
-        float(max(high, last + reach)) if high >= last - _SHORT else None,
+        float(min(low, first - reach)) if low <= first + _SHORT_MM else None,
+        float(max(high, last + reach)) if high >= last - _SHORT_MM else None,
     )
 
 
-def _contour(settings: PathSettings, ground: Ground, report: Report) -> tuple[tuple[Pass, ...], LinkPlanner]:
-    top = float(ground.stock_mm[1, 2])
-    heights = level_heights(ground.floor_mm + settings.allowance_mm, top, settings.axial_depth_mm)
-    element = StructuringElement.tool(ground.tool).with_allowance(settings.allowance_mm)
+def _contour(settings: PathSettings, setup: PlanSetup, progress: Progress) -> tuple[tuple[Pass, ...], LinkPlanner]:
+    top = float(setup.stock_mm[1, 2])
+    heights = level_heights(setup.floor_mm + settings.allowance_mm, top, settings.axial_depth_mm)
+    element = StructuringElement.tool(setup.tool).with_allowance(settings.allowance_mm)
     at = heights[::-1] + _LIFT_MM
-    regions = _inflated(settings, _sections_with(ground, at), element, at, report)[::-1]
+    regions = _inflated(settings, _sections_with(setup, at), element, at, progress)[::-1]
     levels = levels_of(heights, regions)
     chord = _CHORD_PITCHES * settings.pitch_mm
-    window = grown(box_area(*ground.region_mm), ground.overhang_mm, chord)
-    stock = grown(box_area(*ground.stock_mm[:, :2]), ground.tool.max_radius_mm - 3.0 * _SHORT, chord)
+    window = grown(box_area(*setup.region_mm), setup.overhang_mm, chord)
+    stock = grown(box_area(*setup.stock_mm[:, :2]), setup.tool.max_radius_mm - 3.0 * _SHORT_MM, chord)
     options = ContourOptions(
         window=window,
         stock=stock,
         top_mm=top,
         layers=settings.layers or None,
-        radial_depth_mm=settings.radial_depth_mm or 0.8 * ground.tool.nominal_radius_mm,
+        radial_depth_mm=settings.radial_depth_mm or 0.8 * setup.tool.nominal_radius_mm,
         climb=settings.climb,
         chord_mm=chord,
     )
     return contour_passes(levels, options), OutlineLinkPlanner(levels, window, top)
 
 
-def _sections_with(ground: Ground, at: FloatArray) -> Sections:
-    """The part's level sections, and those at the levels themselves: a flat bottom meets nothing lower."""
-    return ground.sections.joined(cut_sections(ground.part.mesh, 2, at))
+def _sections_with(setup: PlanSetup, at: FloatArray) -> Sections:
+    """The part's level sections and those at the levels themselves, as the flat of a tool touches nothing lower."""
+    return setup.sections.joined(cut_sections(setup.part.mesh, 2, at))
 
 
 def _inflated(
-    settings: PathSettings, sections: Sections, element: StructuringElement, at: FloatArray, report: Report
+    settings: PathSettings, sections: Sections, element: StructuringElement, at: FloatArray, progress: Progress
 ) -> Sequence[Region]:
-    """Sections of the inflated part on planes, some at a time."""
+    """Sections of the inflated part on planes, a few at a time."""
     chord = _CHORD_PITCHES * settings.pitch_mm
     made: list[Region] = []
     for first in range(0, len(at), _PLANES_TOGETHER):
-        report("inflating", first / len(at))
+        progress("inflating", first / len(at))
         made += inflated_planes(sections, element, at[first : first + _PLANES_TOGETHER], chord_mm=chord)
     return made
 
 
-def _link_options(settings: PathSettings, ground: Ground) -> LinkOptions:
-    radius = ground.tool.nominal_radius_mm
+def _link_options(settings: PathSettings, setup: PlanSetup) -> LinkOptions:
+    radius = setup.tool.nominal_radius_mm
     step = settings.stepover_mm if settings.strategy == "scan" else (settings.radial_depth_mm or 0.8 * radius)
     return LinkOptions(
-        safe_z_mm=ground.safe_mm,
+        safe_z_mm=setup.safe_mm,
         clearance_mm=settings.clearance_mm,
         feed_mm_min=settings.feed_mm_min,
         plunge_mm_min=settings.plunge_mm_min,
@@ -287,7 +289,7 @@ def _link_options(settings: PathSettings, ground: Ground) -> LinkOptions:
 
 
 def _fitted(path: ToolPath, settings: PathSettings) -> ToolPath:
-    """Needless points left out, arcs fitted."""
+    """The path with superfluous points removed and arcs fitted."""
     side: Side = "below" if settings.strategy == "scan" else "right" if settings.climb else "left"
     tolerance = settings.arcs_mm or settings.thin_mm
     if tolerance == 0.0:
@@ -308,13 +310,10 @@ def _name(settings: PathSettings) -> str:
     return f"{settings.strategy} {step} mm, allowance {settings.allowance_mm:g} mm"
 
 
-def _notes(settings: PathSettings, ground: Ground) -> tuple[str, ...]:
-    """Every setting that is not at its default, for the program's header."""
-    return tuple(_said(settings, ground))
-
-
-def _said(settings: PathSettings, ground: Ground) -> Iterator[str]:
-    yield f"part {Path(ground.part.mesh.name).name}, {describe(ground.tool)}"
+def _notes(settings: PathSettings, setup: PlanSetup) -> tuple[str, ...]:
+    """Part, tool and every setting that is not at its default, for the program's header."""
+    notes = [f"part {Path(setup.part.mesh.name).name}, {describe(setup.tool)}"]
     for key, value in settings.model_dump(exclude_defaults=True).items():
         if key not in ("strategy", "tool"):
-            yield f"{key} {' '.join(f'{v:g}' for v in value) if isinstance(value, tuple) else value}"
+            notes.append(f"{key} {' '.join(f'{v:g}' for v in value) if isinstance(value, tuple) else value}")
+    return tuple(notes)

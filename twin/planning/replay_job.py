@@ -1,4 +1,4 @@
-"""A job file that replays the programs that were made."""
+"""The job file that replays a planned program."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from twin.cam.path.to_nc import NcOptions, Operation, describe, kind_of
 from twin.errors import ToolPathError
 from twin.job.toml_text import toml_text
 
-#: Thinnest tool's diameter by which the replay's slices must be thinner.
-_PITCHES_A_TOOL = 20.0
+#: The replay has at least this many slices over the diameter of the smallest tool.
+_SLICES_PER_DIAMETER = 20.0
 
 
 def replay_tables(
@@ -29,9 +29,11 @@ def replay_tables(
 
     Args:
         program: the NC program.
-        stock_mm: the stock's box, shape (2, 3).
-        pitch_mm: slice pitch wanted of the replay.
-        folder: where the job file is going to be.
+        operations: tools and paths in the program.
+        options: dialect and work offset of the program.
+        stock_mm: the stock's box, lower and upper corner, shape (2, 3).
+        pitch_mm: slice pitch of the replay, at most.
+        folder: folder of the job file.
     """
     tools = {o.number: o for o in operations}
     thinnest = min(2.0 * o.path.tool.nominal_radius_mm for o in operations)
@@ -40,7 +42,7 @@ def replay_tables(
         "machine": {"offsets": {options.wcs: [0.0, 0.0, 0.0]}},
         "stock": {"box_mm": {"min": stock_mm[0].tolist(), "max": stock_mm[1].tolist()}, "wcs": options.wcs},
         "tools": [_tool(o) for _, o in sorted(tools.items())],
-        "simulation": {"slice_pitch_mm": min(pitch_mm, thinnest / _PITCHES_A_TOOL)},
+        "simulation": {"slice_pitch_mm": min(pitch_mm, thinnest / _SLICES_PER_DIAMETER)},
     }
     if options.dialect == "grbl":
         tables["program"]["tool"] = operations[0].number
@@ -66,7 +68,7 @@ def _tool(operation: Operation) -> dict[str, Any]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a file whole or not at all.
+    """Write a text file completely or not at all.
 
     Raises:
         ToolPathError: it cannot be written.
@@ -84,6 +86,8 @@ def write_replay_job(path: Path, tables: Mapping[str, Any], comment: str) -> Non
     """Write a job file.
 
     Args:
+        path: the file.
+        tables: its tables.
         comment: its first line.
     """
     write_text(path, f"# {comment}\n\n{toml_text(tables)}")

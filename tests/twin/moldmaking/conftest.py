@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from twin.arrays import FloatArray
-from twin.moldmaking import MoldChain, mold_from_dict
+from twin.moldmaking import MoldPlan, mold_from_dict
 from twin.workpiece.from_mesh import Solid, solid, stl_bytes
 
 SIZE = (40.0, 30.0, 12.0)
@@ -80,9 +80,9 @@ def job_tables() -> dict[str, Any]:
 
 
 @pytest.fixture(scope="session")
-def chain(mold_folder: Path) -> MoldChain:
-    made = MoldChain(mold_from_dict(tables(), mold_folder))
-    _ = made.finish, made.conventional
+def plan(mold_folder: Path) -> MoldPlan:
+    made = MoldPlan(mold_from_dict(tables(), mold_folder))
+    _ = made.finish, made.raster_baseline
     return made
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from twin.errors import JobError, MeshError, StockError
-from twin.moldmaking import MoldChain, load_mold, mold_from_dict
+from twin.moldmaking import MoldPlan, load_mold, mold_from_dict
 from twin.moldmaking.checks import undercut_warnings
 from twin.workpiece.from_mesh import Solid, solid, stl_bytes
 
@@ -36,7 +36,7 @@ def put(*keys: str | int, value: object) -> Change:
         (put("semi", "allowance_mm", value=0.5), "expected at most rough.allowance_mm = 0.3"),
         (put("finish", "scallop_mm", value=0.01), "finish.stepover_mm: missing; expected either"),
         (put("part", "stl", value="none.stl"), "does not exist"),
-        (put("tools", 1, "number", value=1), "expected a number of its own"),
+        (put("tools", 1, "number", value=1), "expected a unique number"),
         (put("tools", 0, "corner_radius_mm", value=7.0), "expected at most half the diameter"),
         (put("stock", "box_mm", value={"min": [0, 0, 0], "max": [40, 30, 0]}), "expected above 0 along z"),
         (put("rough", "axial_depth", value=1.0), "rough.axial_depth: unknown key; did you mean axial_depth_mm?"),
@@ -50,7 +50,7 @@ def test_mistakes_are_named(job_tables: dict[str, Any], mold_folder: Path, chang
     assert message in str(error.value)
 
 
-def test_all_mistakes_are_told_at_once(job_tables: dict[str, Any], mold_folder: Path) -> None:
+def test_all_mistakes_are_reported_at_once(job_tables: dict[str, Any], mold_folder: Path) -> None:
     put("semi", "tool", value=9)(job_tables)
     put("finish", "stepover_mm", value=None)(job_tables)
     del job_tables["finish"]["stepover_mm"]
@@ -70,13 +70,13 @@ def test_no_toml_and_no_file(tmp_path: Path) -> None:
 def test_an_open_stl_is_refused(job_tables: dict[str, Any], tmp_path: Path, small_mold: Solid) -> None:
     (tmp_path / "part.stl").write_bytes(stl_bytes(small_mold.vertices_mm, small_mold.triangles[5:]))
     with pytest.raises(MeshError):
-        MoldChain(mold_from_dict(job_tables, tmp_path))
+        MoldPlan(mold_from_dict(job_tables, tmp_path))
 
 
 def test_a_stock_smaller_than_the_part_is_refused(job_tables: dict[str, Any], mold_folder: Path) -> None:
     job_tables["stock"] = {"box_mm": {"min": [0, 0, -12], "max": [40, 29, 0]}}
     with pytest.raises(StockError, match="ends at y = 29; expected 30 or more"):
-        MoldChain(mold_from_dict(job_tables, mold_folder))
+        MoldPlan(mold_from_dict(job_tables, mold_folder))
 
 
 def with_a_bridge(part: Solid) -> Solid:
@@ -93,23 +93,31 @@ def test_undercuts_are_reported_and_machined_as_seen_from_above(
 ) -> None:
     part = with_a_bridge(small_mold)
     (warning,) = undercut_warnings(part)
-    assert "2 triangles with 72 mm2 look down" in warning
+    assert "2 triangles with 72 mm2 face down" in warning
     assert not list(undercut_warnings(small_mold))
     (tmp_path / "part.stl").write_bytes(stl_bytes(part.vertices_mm, part.triangles))
-    chain = MoldChain(mold_from_dict(job_tables, tmp_path))
-    path = chain.rough.path
+    plan = MoldPlan(mold_from_dict(job_tables, tmp_path))
+    path = plan.rough.path
     for move in path.moves:
         points = move.chords_mm(1e-4)
-        assert (points[:, 2] >= chain.cutter(chain.job.rough).drop(np.ascontiguousarray(points[:, :2])) - 1e-6).all()
+        assert (points[:, 2] >= plan.cutter(plan.job.rough).drop(np.ascontiguousarray(points[:, :2])) - 1e-6).all()
 
 
 def test_a_holder_that_would_touch_is_warned_of_with_its_place(job_tables: dict[str, Any], mold_folder: Path) -> None:
     job_tables["tools"][0]["flute_length_mm"] = 4.0
     job_tables["tools"][0]["holder"] = [{"diameter_mm": 30.0, "length_mm": 40.0}]
-    chain = MoldChain(mold_from_dict(job_tables, mold_folder))
-    (warning,) = chain.warnings(("rough",))
+    plan = MoldPlan(mold_from_dict(job_tables, mold_folder))
+    (warning,) = plan.warnings(("rough",))
     assert "the holder of tool 1 would touch the part at X" in warning
     assert "mm too short there" in warning
     job_tables["rough"]["axial_depth_mm"] = 5.0
-    chain = MoldChain(mold_from_dict(job_tables, mold_folder))
-    assert any("axial depth 5 mm is more than the flutes" in w for w in chain.warnings(("rough",)))
+    plan = MoldPlan(mold_from_dict(job_tables, mold_folder))
+    assert any("axial depth 5 mm is more than the flute length" in w for w in plan.warnings(("rough",)))
+
+
+def test_the_former_name_of_the_raster_baseline_is_understood(job_tables: dict[str, Any], mold_folder: Path) -> None:
+    job_tables["compare"] = {"conventional": False}
+    assert not mold_from_dict(job_tables, mold_folder).compare.raster_baseline
+    job_tables["compare"]["raster_baseline"] = True
+    with pytest.raises(JobError, match=r"compare\.conventional: unknown key"):
+        mold_from_dict(job_tables, mold_folder)

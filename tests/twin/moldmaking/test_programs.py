@@ -15,7 +15,7 @@ from twin.cli import run
 from twin.errors import ToolPathError
 from twin.job import load_job
 from twin.job.toml_text import toml_text
-from twin.moldmaking import STAGES, MoldChain
+from twin.moldmaking import STAGES, MoldPlan
 from twin.moldmaking.pictures import draw
 from twin.moldmaking.programs import write_programs
 from twin.verification.deviation import Limits, deviation
@@ -23,8 +23,8 @@ from twin.verification.machining import machined
 
 
 @pytest.fixture(scope="module")
-def programs(chain: MoldChain) -> dict[str, Path]:
-    return write_programs(chain, STAGES, force=True)
+def programs(plan: MoldPlan) -> dict[str, Path]:
+    return write_programs(plan, STAGES, force=True)
 
 
 def test_there_is_a_program_a_stage_one_of_all_and_a_job(programs: dict[str, Path]) -> None:
@@ -56,38 +56,38 @@ def test_rs274_runs_them(programs: dict[str, Path], stage: str, tmp_path: Path) 
     assert done.stdout.count("FEED") > 100
 
 
-def test_a_replay_of_all_stages_hits_nothing_and_gives_the_part(programs: dict[str, Path], chain: MoldChain) -> None:
+def test_a_replay_of_all_stages_hits_nothing_and_gives_the_part(programs: dict[str, Path], plan: MoldPlan) -> None:
     job = load_job(programs["job"]).with_pitch(0.8)
     store, collisions = machined(job)
     assert collisions == ()
     # chords 5 um, and what slices of 0.8 mm can tell
-    found = deviation(store, chain.part, tolerance_mm=0.02, excess_mm=0.1, limits=Limits.of(chain.part, None))
+    found = deviation(store, plan.part, tolerance_mm=0.02, excess_mm=0.1, limits=Limits.of(plan.part, None))
     assert found.gouge_ok
 
 
-def test_files_that_are_there_are_not_replaced(programs: dict[str, Path], chain: MoldChain) -> None:
+def test_files_that_are_there_are_not_replaced(programs: dict[str, Path], plan: MoldPlan) -> None:
     before = programs["rough"].read_bytes()
     with pytest.raises(ToolPathError, match="is there already"):
-        write_programs(chain, STAGES)
+        write_programs(plan, STAGES)
     assert programs["rough"].read_bytes() == before
 
 
-def test_pictures(chain: MoldChain, tmp_path: Path) -> None:
-    files = draw(chain, STAGES, tmp_path)
+def test_pictures(plan: MoldPlan, tmp_path: Path) -> None:
+    files = draw(plan, STAGES, tmp_path)
     assert [f.name for f in files] == ["small_rough.png", "small_semi.png", "small_finish.png"]
     assert all(f.stat().st_size > 10_000 for f in files)
 
 
-def test_the_command_writes_one_stage_and_says_json(
+def test_the_command_writes_one_stage_and_prints_json(
     job_tables: dict[str, Any], mold_folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     job_tables["output"] = {"dexel_mm": 0.3, "name": "one", "folder": "one"}
     file = mold_folder / "one.toml"
     file.write_text(toml_text(job_tables))
     assert run(["mold", str(file), "--stage", "rough", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert list(told["stages"]) == ["rough"]
-    assert Path(told["files"]["rough"]).exists()
+    printed = json.loads(capsys.readouterr().out)
+    assert list(printed["stages"]) == ["rough"]
+    assert Path(printed["files"]["rough"]).exists()
     assert not (mold_folder / "one" / "one_semi.nc").exists()
     assert run(["mold", str(file), "--stage", "rough"]) == 1
     assert "is there already" in capsys.readouterr().err
@@ -104,8 +104,8 @@ def test_the_command_prints_the_table(
     assert {"part", "report", *(f"{stage}/cut" for stage in STAGES)} <= set(scene)
     out = capsys.readouterr().out
     assert "Machining time, min" in out
-    assert "less than the conventional chain" in out
-    for name in ("greedy", "2-opt", "ils", "conventional"):
+    assert "less than the raster baseline" in out
+    for name in ("greedy", "2-opt", "ils", "raster baseline"):
         assert f"\n{name}" in out
     assert (mold_folder / "pictures" / "all_semi.png").exists()
 

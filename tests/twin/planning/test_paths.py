@@ -18,7 +18,7 @@ from twin.cam.surface.drop_cutter import DropCutter
 from twin.errors import StockError, ToolError, ToolPathError
 from twin.job import load_job
 from twin.planning.accuracy import pitch_bound_mm, sag_mm
-from twin.planning.paths import Ground, plan, prepare
+from twin.planning.paths import PlanSetup, plan, prepare
 from twin.planning.replay_job import replay_tables, write_replay_job
 from twin.planning.settings import PathSettings, read_settings, settings_of
 from twin.tools.text import parse_tool
@@ -38,17 +38,17 @@ SLOPE = [
 ]
 
 
-def made(part: Solid, **values: Any) -> tuple[ToolPath, Ground]:
+def made(part: Solid, **values: Any) -> tuple[ToolPath, PlanSetup]:
     settings = settings_of({"tool": "ball 4", "pitch_mm": 0.2, **values}, "test")
-    ground = prepare(settings, slice_part(part, settings.pitch_mm))
-    return plan(settings, ground), ground
+    setup = prepare(settings, slice_part(part, settings.pitch_mm))
+    return plan(settings, setup), setup
 
 
-def replayed(path: ToolPath, ground: Ground, part: Solid, folder: Path, pitch: float, **limits: Any) -> Deviation:
+def replayed(path: ToolPath, setup: PlanSetup, part: Solid, folder: Path, pitch: float, **limits: Any) -> Deviation:
     """Write program and job, load them again, cut, and compare."""
     operation, options = Operation(path=path, spindle_rpm=3600.0), NcOptions()
     write_nc(folder / "a.nc", [operation], options)
-    tables = replay_tables(folder / "a.nc", [operation], options, ground.stock_mm, pitch, folder)
+    tables = replay_tables(folder / "a.nc", [operation], options, setup.stock_mm, pitch, folder)
     write_replay_job(folder / "a.toml", tables, "test")
     store, collisions = machined(load_job(folder / "a.toml"))
     assert [c.message for c in collisions] == []
@@ -74,8 +74,8 @@ DRAFT = [(0.0, -2.0), (12.0, -2.0), (12.0, 6.0), (6.0 + 6.0 * math.tan(math.radi
 @pytest.mark.parametrize("tool", ["ball 4", "flat 4", "bull 4 r0.5", "taper 3 r1 a2"])
 def test_exact_rows_are_the_drop_cutters(tool: str) -> None:
     for part in (prism(DRAFT, 0.0, 6.0), small_torus()):
-        path, ground = made(part, strategy="scan", stepover_mm=0.7, direction="y", tool=tool, exact=True)
-        cutter = DropCutter(part.vertices_mm[part.triangles], parse_tool(tool), floor_mm=ground.floor_mm)
+        path, setup = made(part, strategy="scan", stepover_mm=0.7, direction="y", tool=tool, exact=True)
+        cutter = DropCutter(part.vertices_mm[part.triangles], parse_tool(tool), floor_mm=setup.floor_mm)
         lines = [m.chords_mm(1e-4) for m in path.of_kind(MoveKind.CUT)]
         for points in (np.concatenate(lines), np.concatenate([0.5 * (ln[1:] + ln[:-1]) for ln in lines])):
             # chords 0.5 um, points left out 0.2 um, corners drawn on; beside walls as much to a side
@@ -100,7 +100,7 @@ def test_exact_rows_leave_the_allowance() -> None:
 def test_rows_beside_a_drafted_wall_are_as_good_as_their_bound(exact: bool) -> None:
     part = prism(DRAFT, 0.0, 6.0)
     values: dict[str, Any] = {"strategy": "scan", "stepover_mm": 0.13, "direction": "y", "exact": exact}
-    path, ground = made(part, **values)
+    path, setup = made(part, **values)
     points = np.concatenate([m.points_mm for m in path.of_kind(MoveKind.CUT)])
     cutter = DropCutter(part.vertices_mm[part.triangles], parse_tool("ball 4"))
     aside = np.linspace(0.0, 0.1, 101)
@@ -108,17 +108,17 @@ def test_rows_beside_a_drafted_wall_are_as_good_as_their_bound(exact: bool) -> N
     assert free.any(axis=0).all()
     # how far the tip must go away from the wall to be free
     off = float(aside[np.argmax(free, axis=0)].max())
-    bound = pitch_bound_mm(settings_of({"tool": "ball 4", "pitch_mm": 0.2, **values}, "test"), ground)
+    bound = pitch_bound_mm(settings_of({"tool": "ball 4", "pitch_mm": 0.2, **values}, "test"), setup)
     assert off <= bound <= (0.0 if exact else 0.03)
 
 
 @pytest.mark.parametrize(("direction", "stepover"), [("x", 0.8), ("y", 0.8)])
 def test_scallops_are_as_high_as_the_formula_says(tmp_path: Path, direction: str, stepover: float) -> None:
     part = prism(SLOPE, 0.0, 6.0)
-    path, ground = made(part, strategy="scan", stepover_mm=stepover, direction=direction, zigzag=True)
+    path, setup = made(part, strategy="scan", stepover_mm=stepover, direction=direction, zigzag=True)
     # away from the box's sides and from the inner corner, which a ball cannot reach
     limits = Limits.of(part, (8.0, 0.5, 11.0, 5.5))
-    found = replayed(path, ground, part, tmp_path, 0.2, limits=limits, excess_mm=0.1)
+    found = replayed(path, setup, part, tmp_path, 0.2, limits=limits, excess_mm=0.1)
     # rows along x are a step-over apart on the slope too, rows along y are farther apart there
     apart = stepover * (6.0 / 8.0 * 1.0 if direction == "x" else 1.0)
     count = math.ceil((6.0 if direction == "x" else 16.0) / stepover)
@@ -131,19 +131,19 @@ def test_scallops_are_as_high_as_the_formula_says(tmp_path: Path, direction: str
 
 def test_allowance_is_left_everywhere(tmp_path: Path) -> None:
     part = prism(SLOPE, 0.0, 6.0)
-    path, ground = made(part, strategy="scan", stepover_mm=0.5, allowance_mm=0.3, stock_mm=(0, 0, -2, 16, 6, 5.0))
-    found = replayed(path, ground, part, tmp_path, 0.2, limits=Limits.of(part, (8.0, 0.5, 11.0, 5.5)), excess_mm=0.4)
+    path, setup = made(part, strategy="scan", stepover_mm=0.5, allowance_mm=0.3, stock_mm=(0, 0, -2, 16, 6, 5.0))
+    found = replayed(path, setup, part, tmp_path, 0.2, limits=Limits.of(part, (8.0, 0.5, 11.0, 5.5)), excess_mm=0.4)
     scallop = 2.3 - math.sqrt(2.3**2 - 0.25**2)
     assert found.deviation_mm.min() > 0.3 - 0.002
     assert found.worst_excess_mm < 0.3 + scallop + 0.004
 
 
 def test_layers_take_the_stock_down_step_by_step() -> None:
-    path, ground = made(
+    path, setup = made(
         prism(SLOPE, 0.0, 6.0), strategy="scan", stepover_mm=2.0, allowance_mm=0.1, layers=3, axial_depth_mm=1.0
     )
     tops = [m.points_mm[:, 2].max() for m in path.of_kind(MoveKind.CUT)]
-    assert max(tops) <= ground.stock_mm[1, 2] + 0.011
+    assert max(tops) <= setup.stock_mm[1, 2] + 0.011
     floors = {round(float(m.points_mm[:, 2].min()), 2) for m in path.of_kind(MoveKind.CUT)}
     assert floors == {0.1, 1.1, 2.1}
     heights = [m.points_mm[:, 2].min() for m in path.of_kind(MoveKind.CUT)]
@@ -152,8 +152,8 @@ def test_layers_take_the_stock_down_step_by_step() -> None:
 
 def test_a_scan_keeps_to_the_drop_cutter() -> None:
     part = small_torus()
-    path, ground = made(part, strategy="scan", tool="ball 3", pitch_mm=0.1, stepover_mm=0.5, arcs_mm=0.001)
-    cutter = DropCutter(part.vertices_mm[part.triangles], ground.tool, floor_mm=ground.floor_mm)
+    path, setup = made(part, strategy="scan", tool="ball 3", pitch_mm=0.1, stepover_mm=0.5, arcs_mm=0.001)
+    cutter = DropCutter(part.vertices_mm[part.triangles], setup.tool, floor_mm=setup.floor_mm)
     points = np.concatenate([m.chords_mm(1e-4) for m in path.of_kind(MoveKind.CUT, MoveKind.LINK)])
     over = points[:, 2] - cutter.drop(points[:, :2])
     assert np.quantile(np.abs(over), 0.95) < 0.003
@@ -162,7 +162,7 @@ def test_a_scan_keeps_to_the_drop_cutter() -> None:
 
 def test_contours_leave_no_gouge_and_their_levels(tmp_path: Path) -> None:
     part = small_torus()
-    path, ground = made(
+    path, setup = made(
         part,
         strategy="contour",
         tool="flat 3",
@@ -176,7 +176,7 @@ def test_contours_leave_no_gouge_and_their_levels(tmp_path: Path) -> None:
     )
     heights = {round(float(m.points_mm[0, 2]), 6) for m in path.of_kind(MoveKind.CUT)}
     assert heights == {0.0, 0.5, 1.0, 1.5}
-    found = replayed(path, ground, part, tmp_path, 0.2, excess_mm=0.6)
+    found = replayed(path, setup, part, tmp_path, 0.2, excess_mm=0.6)
     assert found.worst_gouge_mm < 0.005
     # steps of 0.5 mm on a tube of 2 mm radius, and fillets that a flat tool cannot reach
     assert found.worst_excess_mm < 0.5
@@ -194,7 +194,7 @@ def test_contours_are_the_outlines_at_the_radius() -> None:
 @pytest.mark.parametrize(("tool", "entry", "climb"), [("flat 4", "helix", True), ("ball 4", "ramp", False)])
 def test_a_pocket_is_cleared_without_a_gouge(tmp_path: Path, tool: str, entry: str, climb: bool) -> None:
     part = pocket(9.0, 6.0, -2.0, -4.0)
-    path, ground = made(
+    path, setup = made(
         part,
         strategy="contour",
         tool=tool,
@@ -210,7 +210,7 @@ def test_a_pocket_is_cleared_without_a_gouge(tmp_path: Path, tool: str, entry: s
         radial_depth_mm=1.5,
     )
     assert any(True for _ in path.of_kind(MoveKind(entry)))
-    found = replayed(path, ground, part, tmp_path, 0.2, excess_mm=1.0)
+    found = replayed(path, setup, part, tmp_path, 0.2, excess_mm=1.0)
     assert found.worst_gouge_mm < 0.003
     # a flat tool leaves its radius's share in the four upright corners, a ball in those and along the floor
     corner = 2.0 * (math.sqrt(2.0) - 1.0)
@@ -279,10 +279,10 @@ def test_settings_come_from_a_file(tmp_path: Path) -> None:
 
 def test_what_is_left_tells_where_rapids_end() -> None:
     values = {"strategy": "scan", "stepover_mm": 2.0, "zigzag": False, "climb": False, "region_mm": (4, 1, 12, 5)}
-    whole, ground = made(prism(SLOPE, 0.0, 6.0), **values)
+    whole, setup = made(prism(SLOPE, 0.0, 6.0), **values)
     known, _ = made(prism(SLOPE, 0.0, 6.0), **values, remaining_mm=0.3)
     downs = [[m.end_mm[2] for m in p.of_kind(MoveKind.RAPID) if m.end_mm[2] < m.start_mm[2]] for p in (whole, known)]
-    assert min(downs[0]) >= float(ground.stock_mm[1, 2])
+    assert min(downs[0]) >= float(setup.stock_mm[1, 2])
     # one row begins over the floor and has 0.3 mm over it, and the clearance of 1 mm over that
     assert min(downs[1]) == pytest.approx(1.3, abs=0.1)
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from twin.moldmaking import MoldChain, Stage
-    from twin.moldmaking.table import Times
+    from twin.moldmaking import MoldPlan, Stage
+    from twin.moldmaking.figures import Times
 
 
 class StageName(StrEnum):
@@ -46,22 +46,22 @@ def mold(
     """
     from twin.cli.console import warn
     from twin.cli.show.progress import working
-    from twin.moldmaking import STAGES, MoldChain, load_mold
+    from twin.moldmaking import STAGES, MoldPlan, load_mold
     from twin.moldmaking.programs import check_paths, program_paths, write_programs
 
     job = load_mold(job_file)
     stages: tuple[Stage, ...] = STAGES if stage is None else (stage.value,)
     with working(quiet=quiet or as_json, even=True) as report:
-        chain = MoldChain(job, report)
-        wanted = [*program_paths(chain, stages).values(), *([rrd] if rrd is not None else [])]
+        plan = MoldPlan(job, report)
+        wanted = [*program_paths(plan, stages).values(), *([rrd] if rrd is not None else [])]
         check_paths(wanted, force=force)
-        files = write_programs(chain, stages, force=force)
-        found = _figures(chain, stages)
+        files = write_programs(plan, stages, force=force)
+        found = _figures(plan, stages)
         if plot is not None:
-            files |= _plotted(chain, stages, plot)
+            files |= _plotted(plan, stages, plot)
         if rrd is not None:
-            files |= _recorded(chain, stages, rrd, force=force)
-        warnings = chain.warnings(stages)
+            files |= _recorded(plan, stages, rrd, force=force)
+        warnings = plan.warnings(stages)
     if as_json:
         typer.echo(
             json.dumps({**found, "files": {k: str(v) for k, v in files.items()}, "warnings": warnings}, indent=1)
@@ -72,28 +72,28 @@ def mold(
         warn(warning)
 
 
-def _figures(chain: MoldChain, stages: tuple[Stage, ...]) -> dict[str, Any]:
+def _figures(plan: MoldPlan, stages: tuple[Stage, ...]) -> dict[str, Any]:
     """All numbers that are said."""
     from dataclasses import asdict
 
     from twin.moldmaking import STAGES
-    from twin.moldmaking.table import rest_table, saved, times_table
+    from twin.moldmaking.figures import rest_table, saved, times_table
 
     figures: dict[str, Any] = {
-        "triangles": len(chain.part.triangles),
-        "read_s": chain.read_s,
-        "stages": {s: _stage_figures(chain, s) for s in stages},
+        "triangles": len(plan.part.triangles),
+        "read_s": plan.read_s,
+        "stages": {s: _stage_figures(plan, s) for s in stages},
     }
     if stages == STAGES:
-        lines = times_table(chain)
+        lines = times_table(plan)
         figures["times_min"] = {line.name: _minutes(line) for line in lines}
         figures["saved"] = saved(lines)
-        figures["rest"] = {name: asdict(rest) for name, rest in rest_table(chain).items()}
+        figures["rest"] = {name: asdict(rest) for name, rest in rest_table(plan).items()}
     return figures
 
 
-def _stage_figures(chain: MoldChain, stage: Stage) -> dict[str, Any]:
-    result = chain.stage(stage)
+def _stage_figures(plan: MoldPlan, stage: Stage) -> dict[str, Any]:
+    result = plan.stage(stage)
     return {
         "time_s": result.time.total_s,
         "cutting_s": result.time.cutting_s,
@@ -113,17 +113,17 @@ def _minutes(line: Times) -> dict[str, float]:
     }
 
 
-def _plotted(chain: MoldChain, stages: tuple[Stage, ...], folder: Path) -> dict[str, Path]:
+def _plotted(plan: MoldPlan, stages: tuple[Stage, ...], folder: Path) -> dict[str, Path]:
     from twin.moldmaking.pictures import draw
 
-    return {f"picture {path.stem}": path for path in draw(chain, stages, folder)}
+    return {f"picture {path.stem}": path for path in draw(plan, stages, folder)}
 
 
-def _recorded(chain: MoldChain, stages: tuple[Stage, ...], file: Path, *, force: bool) -> dict[str, Path]:
+def _recorded(plan: MoldPlan, stages: tuple[Stage, ...], file: Path, *, force: bool) -> dict[str, Path]:
     from twin.cli.show.stills import paths_still
     from twin.sinks.rerun.still import write_still
 
-    write_still(file, paths_still({str(s): chain.stage(s).path for s in stages}, chain.part), force=force)
+    write_still(file, paths_still({str(s): plan.stage(s).path for s in stages}, plan.part), force=force)
     return {"recording": file}
 
 
@@ -144,7 +144,7 @@ def _print(figures: dict[str, Any], files: dict[str, Path]) -> None:
         console.print()
         console.print(_times_table(figures))
     if figures.get("saved") is not None:
-        console.print(f"{100.0 * figures['saved']:.1f} % less than the conventional chain")
+        console.print(f"{100.0 * figures['saved']:.1f} % less than the raster baseline")
     console.print()
     for name, path in files.items():
         console.print(f"{name:12} {path}", markup=False, soft_wrap=True)

@@ -15,7 +15,7 @@ from twin.cli.show.progress import working
 from twin.cli.show.words import clock, grouped, plural
 from twin.errors import ToolPathError
 from twin.planning.accuracy import pitch_bound_mm
-from twin.planning.paths import Ground, plan, prepare
+from twin.planning.paths import PlanSetup, plan, prepare
 from twin.planning.replay_job import replay_tables, write_replay_job
 from twin.planning.settings import PathSettings, read_settings, settings_of
 
@@ -32,7 +32,7 @@ class Planned:
     """
 
     settings: PathSettings
-    ground: Ground
+    setup: PlanSetup
     path: ToolPath
     wall_time_s: float
 
@@ -79,16 +79,16 @@ def planned(
     settings = settings_of({**own, **values, "strategy": strategy}, source)
     begin = time.perf_counter()
     with working(quiet=quiet) as report:
-        ground = prepare(settings, part, report)
-        path = plan(settings, ground, report)
-    bound = pitch_bound_mm(settings, ground)
+        setup = prepare(settings, part, report)
+        path = plan(settings, setup, report)
+    bound = pitch_bound_mm(settings, setup)
     if bound > settings.tolerance_mm:
         warn(
             f"pitch_mm = {settings.pitch_mm:g} may be too coarse: details between slices are known to {bound:.3g} mm, "
             f"more than tolerance_mm = {settings.tolerance_mm:g}"
             + ("; --exact makes rows from the triangles instead" if strategy == "scan" else "")
         )
-    return Planned(settings=settings, ground=ground, path=path, wall_time_s=time.perf_counter() - begin)
+    return Planned(settings=settings, setup=setup, path=path, wall_time_s=time.perf_counter() - begin)
 
 
 def finish(made: Planned, files: Mapping[str, Path | None], *, force: bool, as_json: bool, quiet: bool) -> None:
@@ -115,7 +115,7 @@ def finish(made: Planned, files: Mapping[str, Path | None], *, force: bool, as_j
     lines = write_nc(out, [operation], options)
     job = files["job"]
     assert job is not None
-    tables = replay_tables(out, [operation], options, made.ground.stock_mm, settings.pitch_mm, job.absolute().parent)
+    tables = replay_tables(out, [operation], options, made.setup.stock_mm, settings.pitch_mm, job.absolute().parent)
     write_replay_job(job, tables, f"Replays {out.name}: {path.name}")
     _draw(made, operation, options, files, force=force)
     _say(made, lines, files, as_json=as_json, quiet=quiet)
@@ -132,7 +132,7 @@ def _draw(
         from twin.cli.show.stills import paths_still
         from twin.sinks.rerun.still import write_still
 
-        mesh = made.ground.part.mesh
+        mesh = made.setup.part.mesh
         write_still(files["recording"], paths_still({"path": made.path}, mesh), force=force)
 
 

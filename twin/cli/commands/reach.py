@@ -1,4 +1,4 @@
-"""``twin machinable``."""
+"""``twin reach``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _SLICES_ALONG = 600
 
 
-def machinable(
+def reach(
     part: Annotated[Path, typer.Argument(metavar="PART.stl", help="The part to be made, in mm.", show_default=False)],
     tool: Annotated[
         list[str] | None, typer.Option("--tool", metavar="TOOL", help='"ball 8", "flat 10", "bull 12 r2"; may repeat.')

@@ -1,4 +1,4 @@
-"""Files that ``twin machinable`` writes: a recording, meshes, a picture."""
+"""Files that ``twin reach`` writes: a recording, meshes, a picture."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``twin machinable`` tells, for people and as JSON."""
+"""What ``twin reach`` tells, for people and as JSON."""
 
 from __future__ import annotations
 

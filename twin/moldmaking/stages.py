@@ -1,9 +1,9 @@
-"""The stages of a mold, one after the other, each from the stock that the one before leaves."""
+"""The stages of a mold, one after the other, each from the stock that the previous one leaves."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, TypeAlias
@@ -25,21 +25,20 @@ from twin.cam.surface.surface import surface_of_mesh
 from twin.moldmaking import checks
 from twin.moldmaking.load import shape_of
 from twin.moldmaking.model import MoldJob, StageTable
+from twin.planning.paths import Progress, silent
 from twin.tools.shape import ToolShape
 from twin.workpiece.from_mesh import load_mesh
 
 Stage: TypeAlias = Literal["rough", "semi", "finish"]
 STAGES: tuple[Stage, ...] = ("rough", "semi", "finish")
-#: Told what is being done, and how much of all the work is done, 0 to 1.
-Report: TypeAlias = Callable[[str, float], None]
 
-#: Parts of the work, for the progress alone.
+#: Shares of the whole work, for the progress display only.
 _SHARES: Mapping[str, tuple[float, float]] = {
     "part": (0.0, 0.1),
     "rough": (0.1, 0.3),
     "semi": (0.3, 0.5),
     "finish": (0.5, 0.75),
-    "conventional": (0.75, 1.0),
+    "raster baseline": (0.75, 1.0),
 }
 
 
@@ -48,12 +47,12 @@ class StageResult:
     """One stage.
 
     Attributes:
-        stage: which.
-        path: what its program does.
-        time: of the path.
-        stock: as it is left, not to be changed.
-        computed_s: time that the computation took.
-        by_method: paths of the other orders, by `twin.cam.path.tour.METHODS`; semi-finishing only.
+        stage: its name.
+        path: the tool path of its program.
+        time: machining time of the path.
+        stock: the stock afterwards; not to be changed.
+        computed_s: computing time.
+        by_method: machining times by search method, `twin.cam.path.tour.METHODS`; semi-finishing only.
     """
 
     stage: Stage
@@ -65,13 +64,13 @@ class StageResult:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Conventional:
-    """Scanning lines in roughing and semi-finishing.
+class RasterBaseline:
+    """Raster roughing and raster semi-finishing, which the contours are compared with.
 
     Attributes:
         rough, semi: the paths.
-        rough_time, semi_time: their times.
-        stock: as they leave it.
+        rough_time, semi_time: their machining times.
+        stock: the stock afterwards.
     """
 
     rough: ToolPath
@@ -81,26 +80,22 @@ class Conventional:
     stock: Dexels
 
 
-def _quiet(what: str, part: float) -> None:
-    """Says nothing."""
-
-
-class MoldChain:
-    """A mold job at work; every stage is computed once, when it is asked for.
+class MoldPlan:
+    """The stages of a mold job; each is computed once, when it is first needed.
 
     Args:
-        job: what to do.
-        report: told of the progress.
+        job: the checked job.
+        progress: called with the current task and the share of the work that is done, 0 to 1.
 
     Raises:
-        MeshError: the part is no solid.
-        StockError: the stock does not hold the part.
+        MeshError: the part is not a closed solid.
+        StockError: the stock does not contain the part.
     """
 
-    def __init__(self, job: MoldJob, report: Report = _quiet) -> None:
+    def __init__(self, job: MoldJob, progress: Progress = silent) -> None:
         self.job = job
-        self._report = report
-        report("reading the part", 0.0)
+        self._progress = progress
+        progress("reading the part", 0.0)
         begin = time.perf_counter()
         self.part = load_mesh(job.part.stl, scale=job.part.scale, offset_mm=job.part.offset_mm)
         self.surface = surface_of_mesh(self.part.vertices_mm, self.part.triangles)
@@ -125,17 +120,17 @@ class MoldChain:
         )
 
     def shape(self, stage: StageTable) -> ToolShape:
-        """The cutting part of a stage's tool."""
+        """Shape of the cutting part of a stage's tool."""
         return shape_of(self.job, stage.tool)
 
     def cutter(self, stage: StageTable) -> DropCutter:
-        """A stage's tool over the part."""
+        """The drop-cutter of a stage's tool on the part."""
         if stage.tool not in self._cutters:
             self._cutters[stage.tool] = DropCutter(self.surface, self.shape(stage))
         return self._cutters[stage.tool]
 
     def stage(self, name: Stage) -> StageResult:
-        """One stage, those before it made first."""
+        """One stage; the stages before it are computed first."""
         results: dict[Stage, StageResult] = {"rough": self.rough}
         if name != "rough":
             results["semi"] = self.semi
@@ -144,13 +139,13 @@ class MoldChain:
         return results[name]
 
     def fresh_stock(self) -> Dexels:
-        """The block as dexels."""
+        """The uncut stock as dexels."""
         low, high = self.space.low_mm, self.space.high_mm
         return Dexels(low[:2], high[:2], self.job.output.dexel_mm, float(high[2]), float(low[2]))
 
     @property
     def roughing_options(self) -> RoughingOptions:
-        """Of contours and of scanning rows."""
+        """Options of contour roughing, and of the raster baseline."""
         table = self.job.rough
         return RoughingOptions(
             axial_depth_mm=table.axial_depth_mm,
@@ -163,7 +158,7 @@ class MoldChain:
 
     @property
     def semi_options(self) -> SemiOptions:
-        """Of semi-finishing."""
+        """Options of semi-finishing."""
         table = self.job.semi
         return SemiOptions(
             axial_depth_mm=table.axial_depth_mm,
@@ -178,7 +173,7 @@ class MoldChain:
 
     @cached_property
     def finishing_options(self) -> FinishingOptions:
-        """Of finishing."""
+        """Options of finishing; the step-over follows from the scallop height where that is given."""
         table = self.job.finish
         stepover = table.stepover_mm
         if stepover is None:
@@ -197,7 +192,7 @@ class MoldChain:
     @cached_property
     def rough(self) -> StageResult:
         """Contour roughing."""
-        self._say("rough", "roughing", 0.0)
+        self._at("rough", "roughing", 0.0)
         begin, table = time.perf_counter(), self.job.rough
         tool = self.shape(table)
         path = contour_roughing(self.space, tool, self.roughing_options, self.cutter(table).drop)
@@ -205,22 +200,22 @@ class MoldChain:
 
     @cached_property
     def semi(self) -> StageResult:
-        """Semi-finishing of what roughing leaves, in the best order that the job's method finds."""
+        """Semi-finishing of the rest material after roughing, in the best order that the job's method finds."""
         before, table = self.rough.stock, self.job.semi
-        self._say("semi", "finding what is left", 0.0)
+        self._at("semi", "finding rest material", 0.0)
         begin, tool, dynamics = time.perf_counter(), self.shape(table), self.job.machine.dynamics
         options, stock = self.semi_options, before.copy()
         levels = remaining_cuts(
-            self.space, tool, options, stock, lambda k, n: self._say("semi", "finding what is left", 0.7 * k / n)
+            self.space, tool, options, stock, lambda k, n: self._at("semi", "finding rest material", 0.7 * k / n)
         )
         best: tuple[ToolPath, PathTime] | None = None
         times: dict[str, PathTime] = {}
         for method in METHODS[: METHODS.index(table.method) + 1]:
-            self._say("semi", f"ordering, {method}", 0.7 + 0.1 * METHODS.index(method))
+            self._at("semi", f"ordering, {method}", 0.7 + 0.1 * METHODS.index(method))
             search = replace(options.search, method=method)
             path = semi_finishing(self.space, tool, replace(options, search=search), dynamics, levels, before)
             spent = machining_time(path, dynamics)
-            # the search's clock knows no corners; a longer path by the machine's clock is not taken
+            # the search's times ignore corners; a path that takes longer on the machine is not used
             if best is None or spent.total_s < best[1].total_s:
                 best = path, spent
             times[method] = best[1]
@@ -229,17 +224,17 @@ class MoldChain:
 
     @cached_property
     def finish(self) -> StageResult:
-        """Finishing of what semi-finishing leaves."""
+        """Finishing of the rest material after semi-finishing."""
         before = self.semi.stock
-        self._say("finish", "finishing", 0.0)
+        self._at("finish", "finishing", 0.0)
         begin = time.perf_counter()
         cutter = self.cutter(self.job.finish)
         path = finishing(self.space, cutter, self.finishing_options, before, self.job.machine.dynamics)
         return self._result("finish", path, before.copy(), self.shape(self.job.finish), begin, {})
 
     @cached_property
-    def conventional(self) -> Conventional:
-        """Scanning lines in roughing and semi-finishing, under the same conditions."""
+    def raster_baseline(self) -> RasterBaseline:
+        """Raster roughing and semi-finishing under the same conditions."""
         dynamics, table = self.job.machine.dynamics, self.job.rough
         stock, before = self.fresh_stock(), self.fresh_stock()
         rough_tool, semi_tool, semi = self.shape(table), self.shape(self.job.semi), self.semi_options
@@ -249,7 +244,7 @@ class MoldChain:
             self.roughing_options,
             stock,
             semi.least_mm,
-            lambda k, n: self._say("conventional", "scanning lines, roughing", 0.4 * k / n),
+            lambda k, n: self._at("raster baseline", "raster roughing", 0.4 * k / n),
         )
         rough = scanned(self.space, rough_tool, self.roughing_options, cuts, before, one_way=True)
         before = stock.copy()
@@ -260,10 +255,10 @@ class MoldChain:
             options,
             stock,
             semi.least_mm,
-            lambda k, n: self._say("conventional", "scanning lines, semi-finishing", 0.4 + 0.4 * k / n),
+            lambda k, n: self._at("raster baseline", "raster semi-finishing", 0.4 + 0.4 * k / n),
         )
         path = scanned(self.space, semi_tool, options, cuts, before, one_way=semi.direction == "climb")
-        return Conventional(
+        return RasterBaseline(
             rough=rough,
             semi=path,
             rough_time=machining_time(rough, dynamics),
@@ -271,9 +266,9 @@ class MoldChain:
             stock=stock,
         )
 
-    def _say(self, share: str, what: str, part: float) -> None:
-        low, high = _SHARES[share]
-        self._report(what, low + part * (high - low))
+    def _at(self, stage: str, task: str, share: float) -> None:
+        low, high = _SHARES[stage]
+        self._progress(task, low + share * (high - low))
 
     def _result(
         self,
@@ -284,7 +279,7 @@ class MoldChain:
         begin: float,
         by_method: Mapping[str, PathTime],
     ) -> StageResult:
-        """A finished stage; the stock is lowered by its path."""
+        """A finished stage; its path is cut from the stock."""
         stock.cut(tool, Strokes.of_path(path))
         return StageResult(
             stage=stage,
@@ -296,7 +291,7 @@ class MoldChain:
         )
 
     def warnings(self, stages: tuple[Stage, ...] = STAGES) -> list[str]:
-        """What needs attention: undercuts, shank and holder that touch the part, depths beyond the flutes."""
+        """Warnings: undercuts, shank or holder that would touch the part, depths of cut beyond the flute length."""
         found = list(checks.undercut_warnings(self.part))
         for name in stages:
             table = getattr(self.job, name)

@@ -1,4 +1,4 @@
-"""``twin machinable``."""
+"""``twin reach``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def pocket(tmp_path: Path) -> Path:
 
 def test_a_table_of_tools_and_all_outputs(pocket: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = pocket.parent
-    words = ["machinable", str(pocket), "--tool", "flat 4", "--tool", "flat 16", "--pitch", "0.25", "--above"]
+    words = ["reach", str(pocket), "--tool", "flat 4", "--tool", "flat 16", "--pitch", "0.25", "--above"]
     outputs = ["--rrd", str(folder / "a.rrd"), "--mesh", str(folder / "left"), "--plot", str(folder / "a.png")]
     assert run([*words, *outputs]) == 0
     text = capsys.readouterr().out
@@ -48,7 +48,7 @@ def test_a_table_of_tools_and_all_outputs(pocket: Path, capsys: pytest.CaptureFi
 
 
 def test_json_and_the_largest_ball(pocket: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["machinable", str(pocket), "--tool", "ball 4", "--largest", "--pitch", "0.25", "--json"]) == 0
+    assert run(["reach", str(pocket), "--tool", "ball 4", "--largest", "--pitch", "0.25", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     (tool,) = told["tools"]
     assert told["pitch_mm"] == [0.25, 0.25, 0.25] and told["largest_ball_diameter_mm"] is None
@@ -60,7 +60,7 @@ def test_json_and_the_largest_ball(pocket: Path, capsys: pytest.CaptureFixture[s
 def test_nothing_stays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     block = tmp_path / "block.stl"
     solids.torus_example().write_stl(block, solids.box((0, 0, 0), (20, 20, 8)))
-    words = ["machinable", str(block), "--tool", "ball 6", "--largest", "--mesh", str(tmp_path / "left")]
+    words = ["reach", str(block), "--tool", "ball 6", "--largest", "--mesh", str(tmp_path / "left")]
     assert run([*words, "--pitch", "0.5", "--plot", str(tmp_path / "a.png")]) == 0
     text = capsys.readouterr().out
     assert "nothing" in text and "Largest ball that finishes the part: diameter 8 mm." in text
@@ -70,7 +70,7 @@ def test_nothing_stays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
 def test_a_pitch_too_coarse_for_the_thickness_asked_for_is_told(
     pocket: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(["machinable", str(pocket), "--tool", "ball 4", "--pitch", "0.5", "--thin", "0.01"]) == 0
+    assert run(["reach", str(pocket), "--tool", "ball 4", "--pitch", "0.5", "--thin", "0.01"]) == 0
     told = capsys.readouterr().err
     assert "slices 0.5 mm apart may show leftovers up to 0.375 mm thick that are none; for 0.01 mm expected" in told
 
@@ -87,12 +87,12 @@ def test_a_pitch_too_coarse_for_the_thickness_asked_for_is_told(
     ],
 )
 def test_mistakes(pocket: Path, words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["machinable", str(pocket), *words]) == 1
+    assert run(["reach", str(pocket), *words]) == 1
     assert message in capsys.readouterr().err
 
 
 def test_an_open_part_is_refused(pocket: Path, capsys: pytest.CaptureFixture[str]) -> None:
     data = pocket.read_bytes()
     pocket.write_bytes(data[:80] + struct.pack("<I", 27) + data[84:-50])
-    assert run(["machinable", str(pocket), "--tool", "ball 4"]) == 1
+    assert run(["reach", str(pocket), "--tool", "ball 4"]) == 1
     assert "the surface leaks: 3 open edges around 1 hole" in capsys.readouterr().err

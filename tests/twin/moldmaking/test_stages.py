@@ -1,4 +1,4 @@
-"""The chain on a small mold: nothing gouged, everything reached, times in order, programs that other readers take."""
+"""The stages of a small mold: nothing gouged, everything reached, times in order, programs that other readers take."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from twin.cam.stock.dexel import Dexels
 from twin.cam.stock.rest import grown, stock_heights
 from twin.cam.stock.strokes import Strokes
 from twin.cam.surface.drop_cutter import DropCutter
-from twin.moldmaking import STAGES, MoldChain
-from twin.moldmaking.table import rest_table, saved, times_table
+from twin.moldmaking import STAGES, MoldPlan
+from twin.moldmaking.figures import rest_table, saved, times_table
 
 #: Chords of arcs when paths are checked, mm.
 FINE = 1e-5
@@ -30,45 +30,45 @@ def tips(path: ToolPath, *kinds: MoveKind) -> FloatArray:
     return np.concatenate([subdivided(m.chords_mm(FINE), 0.1) for m in moves])
 
 
-def inside_mm(chain: MoldChain, path: ToolPath, smaller_mm: float) -> float:
+def inside_mm(plan: MoldPlan, path: ToolPath, smaller_mm: float) -> float:
     """How far a tool that is thinner all around by so much would be in the part at most; negative where it is free."""
     thin = replace(path.tool, corner_mm=path.tool.corner_mm - smaller_mm, height_mm=path.tool.height_mm)
     at = tips(path)
-    lowest = DropCutter(chain.surface, thin).drop(np.ascontiguousarray(at[:, :2])) - smaller_mm
+    lowest = DropCutter(plan.surface, thin).drop(np.ascontiguousarray(at[:, :2])) - smaller_mm
     return float((lowest - at[:, 2]).max())
 
 
 @pytest.mark.parametrize("stage", ["rough", "semi"])
-def test_allowances_are_kept_in_all_directions(chain: MoldChain, stage: str) -> None:
-    path = chain.stage(stage).path  # type: ignore[arg-type]
-    allowance = getattr(chain.job, stage).allowance_mm
+def test_allowances_are_kept_in_all_directions(plan: MoldPlan, stage: str) -> None:
+    path = plan.stage(stage).path  # type: ignore[arg-type]
+    allowance = getattr(plan.job, stage).allowance_mm
     thick = grown(path.tool, allowance - 0.01)
     at = tips(path)
-    lowest = DropCutter(chain.surface, thick).drop(np.ascontiguousarray(at[:, :2])) + allowance - 0.01
+    lowest = DropCutter(plan.surface, thick).drop(np.ascontiguousarray(at[:, :2])) + allowance - 0.01
     assert float((lowest - at[:, 2]).max()) < 1e-6
 
 
-def test_finishing_stays_within_the_chord_tolerance(chain: MoldChain) -> None:
+def test_finishing_stays_within_the_chord_tolerance(plan: MoldPlan) -> None:
     # a tool thinner by the tolerance and a micrometre, all around, touches nothing
-    assert inside_mm(chain, chain.finish.path, chain.job.finish.chord_mm + 0.001) < 1e-6
+    assert inside_mm(plan, plan.finish.path, plan.job.finish.chord_mm + 0.001) < 1e-6
 
 
-def test_conventional_paths_keep_the_allowance(chain: MoldChain) -> None:
-    for path, allowance in ((chain.conventional.rough, 0.3), (chain.conventional.semi, 0.15)):
+def test_raster_paths_keep_the_allowance(plan: MoldPlan) -> None:
+    for path, allowance in ((plan.raster_baseline.rough, 0.3), (plan.raster_baseline.semi, 0.15)):
         at = tips(path)
-        lowest = DropCutter(chain.surface, path.tool).drop(np.ascontiguousarray(at[:, :2])) + allowance
+        lowest = DropCutter(plan.surface, path.tool).drop(np.ascontiguousarray(at[:, :2])) + allowance
         assert float((lowest - at[:, 2]).max()) < 1e-6
 
 
-def test_each_stage_leaves_less_and_finishing_leaves_scallops_and_fillets(chain: MoldChain) -> None:
-    rest = rest_table(chain)
+def test_each_stage_leaves_less_and_finishing_leaves_scallops_and_fillets(plan: MoldPlan) -> None:
+    rest = rest_table(plan)
     volumes = [rest[s].volume_mm3 for s in STAGES]
     assert volumes == sorted(volumes, reverse=True)
     # what the finishing tool can reach, and scallops and chords above it
-    stock, tool = chain.finish.stock, chain.finish.path.tool
+    stock, tool = plan.finish.stock, plan.finish.path.tool
     points = stock.points_mm
-    part = DropCutter(chain.surface, None).drop(points)
-    reach = DropCutter(chain.surface, tool).drop(points)
+    part = DropCutter(plan.surface, None).drop(points)
+    reach = DropCutter(plan.surface, tool).drop(points)
     # the lowest place of a tool's underside at each dexel over all places of the tool: closing on the dexel grid
     closed = Dexels(stock.low_mm, stock.high_mm, 0.2, 5.0, -12.0)
     stays = np.column_stack((points, reach))
@@ -83,25 +83,25 @@ def test_each_stage_leaves_less_and_finishing_leaves_scallops_and_fillets(chain:
     assert float((stock.heights_mm.ravel() - part).min()) > -0.06
 
 
-def test_times_come_out_in_order(chain: MoldChain) -> None:
-    lines = {line.name: line for line in times_table(chain)}
-    assert list(lines) == ["greedy", "2-opt", "ils", "conventional"]
-    assert lines["ils"].semi_s <= lines["2-opt"].semi_s <= lines["greedy"].semi_s < lines["conventional"].semi_s
+def test_times_come_out_in_order(plan: MoldPlan) -> None:
+    lines = {line.name: line for line in times_table(plan)}
+    assert list(lines) == ["greedy", "2-opt", "ils", "raster baseline"]
+    assert lines["ils"].semi_s <= lines["2-opt"].semi_s <= lines["greedy"].semi_s < lines["raster baseline"].semi_s
     part = saved(list(lines.values()))
     assert part is not None
-    assert part == pytest.approx(1.0 - lines["ils"].total_s / lines["conventional"].total_s)
+    assert part == pytest.approx(1.0 - lines["ils"].total_s / lines["raster baseline"].total_s)
 
 
-def test_roughing_enters_by_helix_or_ramp_and_plunges_through_air_only(chain: MoldChain) -> None:
-    path = chain.rough.path
+def test_roughing_enters_by_helix_or_ramp_and_plunges_through_air_only(plan: MoldPlan) -> None:
+    path = plan.rough.path
     kinds = path.lengths_mm()
     assert kinds[MoveKind.HELIX] > 0.0
-    top = chain.space.top_mm
+    top = plan.space.top_mm
     cleared: list[float] = []
     for move in path.moves:
         if move.kind is MoveKind.PLUNGE and move.end_mm[2] < top - 1e-9:
             cleared.append(float(move.end_mm[2]))
-            assert move.feed_mm_min == chain.job.rough.feeds.ramp
+            assert move.feed_mm_min == plan.job.rough.feeds.ramp
     # a straight way down into material would be a pass with material above it: those are helices and ramps
     steepest = max(
         math.degrees(
@@ -109,7 +109,7 @@ def test_roughing_enters_by_helix_or_ramp_and_plunges_through_air_only(chain: Mo
         )
         for m in path.of_kind(MoveKind.HELIX)
     )
-    assert steepest <= chain.job.rough.ramp_deg + 1e-6
+    assert steepest <= plan.job.rough.ramp_deg + 1e-6
 
 
 def rapids_in_stock_mm(path: ToolPath, stock: Dexels) -> float:
@@ -128,45 +128,43 @@ def rapids_in_stock_mm(path: ToolPath, stock: Dexels) -> float:
     return deepest
 
 
-def test_rapids_touch_no_stock(chain: MoldChain) -> None:
-    before = chain.fresh_stock()
+def test_rapids_touch_no_stock(plan: MoldPlan) -> None:
+    before = plan.fresh_stock()
     for stage in STAGES:
-        path = chain.stage(stage).path
+        path = plan.stage(stage).path
         assert rapids_in_stock_mm(path, before.copy()) < 1e-6, stage
-        before = chain.stage(stage).stock
-    before = chain.fresh_stock()
-    for path in (chain.conventional.rough, chain.conventional.semi):
+        before = plan.stage(stage).stock
+    before = plan.fresh_stock()
+    for path in (plan.raster_baseline.rough, plan.raster_baseline.semi):
         assert rapids_in_stock_mm(path, before) < 1e-6
 
 
-def test_links_stay_in_the_free_area_of_their_level(chain: MoldChain) -> None:
-    tool, options = chain.rough.path.tool, chain.roughing_options
-    levels = roughing_levels(chain.space, options)
+def test_links_stay_in_the_free_area_of_their_level(plan: MoldPlan) -> None:
+    tool, options = plan.rough.path.tool, plan.roughing_options
+    levels = roughing_levels(plan.space, options)
     free_areas = level_free_areas(
-        chain.part, tool, levels, options.allowance_mm, chain.space.window(tool.max_radius_mm + options.allowance_mm)
+        plan.part, tool, levels, options.allowance_mm, plan.space.window(tool.max_radius_mm + options.allowance_mm)
     )
-    planner = LevelLinkPlanner(levels, free_areas, chain.space.top_mm)
-    links = list(chain.rough.path.of_kind(MoveKind.LINK))
+    planner = LevelLinkPlanner(levels, free_areas, plan.space.top_mm)
+    links = list(plan.rough.path.of_kind(MoveKind.LINK))
     assert links
     assert all(planner.free(m.points_mm) for m in links)
 
 
-def test_equal_jobs_give_equal_paths(chain: MoldChain) -> None:
-    again = contour_roughing(
-        chain.space, chain.rough.path.tool, chain.roughing_options, chain.cutter(chain.job.rough).drop
-    )
-    assert len(again.moves) == len(chain.rough.path.moves)
+def test_equal_jobs_give_equal_paths(plan: MoldPlan) -> None:
+    again = contour_roughing(plan.space, plan.rough.path.tool, plan.roughing_options, plan.cutter(plan.job.rough).drop)
+    assert len(again.moves) == len(plan.rough.path.moves)
     assert all(
-        np.array_equal(a.points_mm, b.points_mm) for a, b in zip(again.moves, chain.rough.path.moves, strict=True)
+        np.array_equal(a.points_mm, b.points_mm) for a, b in zip(again.moves, plan.rough.path.moves, strict=True)
     )
 
 
-def test_stage_times_are_those_of_their_paths(chain: MoldChain) -> None:
+def test_stage_times_are_those_of_their_paths(plan: MoldPlan) -> None:
     for stage in STAGES:
-        result = chain.stage(stage)
-        assert result.time.total_s == machining_time(result.path, chain.job.machine.dynamics).total_s
-        assert result.time.total_s > result.path.duration_s(chain.job.machine.rapid_mm_min)
+        result = plan.stage(stage)
+        assert result.time.total_s == machining_time(result.path, plan.job.machine.dynamics).total_s
+        assert result.time.total_s > result.path.duration_s(plan.job.machine.rapid_mm_min)
 
 
-def test_nothing_warns_on_a_sound_job(chain: MoldChain) -> None:
-    assert chain.warnings() == []
+def test_nothing_warns_on_a_sound_job(plan: MoldPlan) -> None:
+    assert plan.warnings() == []

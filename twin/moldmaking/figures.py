@@ -1,4 +1,7 @@
-"""Times of the chain's stages beside those of its variants (the mold paper's Tables 2 and 3)."""
+"""Machining times of the stages next to those of other orders and of the raster baseline, and rest material.
+
+The comparison is that of the mold paper's Tables 2 and 3.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.cam.surface.drop_cutter import DropCutter
-from twin.moldmaking.chain import MoldChain
+from twin.moldmaking.stages import MoldPlan
 
-CONVENTIONAL = "conventional"
+BASELINE = "raster baseline"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,8 +20,8 @@ class Times:
     """Machining time of one variant, s, without tool changes.
 
     Attributes:
-        name: a method of ordering, or ``conventional``.
-        rough_s, semi_s, finish_s: of the stages.
+        name: a method of ordering, or ``raster baseline``.
+        rough_s, semi_s, finish_s: times of the stages.
     """
 
     name: str
@@ -28,22 +31,22 @@ class Times:
 
     @property
     def total_s(self) -> float:
-        """Of all stages."""
+        """Time of all stages."""
         return self.rough_s + self.semi_s + self.finish_s
 
 
-def times_table(chain: MoldChain) -> list[Times]:
-    """A line for each order of semi-finishing, and the conventional chain where it is asked for."""
-    rough, finish = chain.rough.time.total_s, chain.finish.time.total_s
+def times_table(plan: MoldPlan) -> list[Times]:
+    """One line per search method of semi-finishing, and one for the raster baseline where it is requested."""
+    rough, finish = plan.rough.time.total_s, plan.finish.time.total_s
     lines = [
         Times(name=name, rough_s=rough, semi_s=spent.total_s, finish_s=finish)
-        for name, spent in chain.semi.by_method.items()
+        for name, spent in plan.semi.by_method.items()
     ]
-    if chain.job.compare.conventional:
-        other = chain.conventional
+    if plan.job.compare.raster_baseline:
+        other = plan.raster_baseline
         lines.append(
             Times(
-                name=CONVENTIONAL,
+                name=BASELINE,
                 rough_s=other.rough_time.total_s,
                 semi_s=other.semi_time.total_s,
                 finish_s=finish,
@@ -53,22 +56,22 @@ def times_table(chain: MoldChain) -> list[Times]:
 
 
 def saved(lines: list[Times]) -> float | None:
-    """Part of the conventional chain's time that the best order saves; None without that chain."""
-    others = [line for line in lines if line.name == CONVENTIONAL]
+    """Share of the raster baseline's time that the best order saves; None without the baseline."""
+    others = [line for line in lines if line.name == BASELINE]
     if not others:
         return None
-    best = min(line.total_s for line in lines if line.name != CONVENTIONAL)
+    best = min(line.total_s for line in lines if line.name != BASELINE)
     return 1.0 - best / others[0].total_s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rest:
-    """What a stage leaves on the part, measured along z at the dexels.
+    """Rest material of a stage, measured along z at the dexels.
 
     Attributes:
-        volume_mm3: above the part.
-        median_mm, most_mm: height above it.
-        gouge_mm: depth of the deepest cut into it.
+        volume_mm3: volume above the part.
+        median_mm, most_mm: median and largest height above the part.
+        gouge_mm: depth of the deepest gouge.
     """
 
     volume_mm3: float
@@ -77,10 +80,10 @@ class Rest:
     gouge_mm: float
 
 
-def rest_table(chain: MoldChain) -> dict[str, Rest]:
-    """What each stage leaves."""
-    surface = DropCutter(chain.surface, None)
-    results = {name: chain.stage(name) for name in ("rough", "semi", "finish")}
+def rest_table(plan: MoldPlan) -> dict[str, Rest]:
+    """Rest material after each stage."""
+    surface = DropCutter(plan.surface, None)
+    results = {name: plan.stage(name) for name in ("rough", "semi", "finish")}
     first = results["rough"].stock
     part = surface.drop(first.points_mm).reshape(first.heights_mm.shape)
     table: dict[str, Rest] = {}
