@@ -7,13 +7,22 @@ class TwinError(Exception):
     """A mistake that the user can mend: one message that names file or key, place, value and what was expected."""
 
 
-class JobError(TwinError):
-    """A job file that cannot be used; ``problems`` holds every mistake found, one line each."""
+class SettingsError(TwinError):
+    """Settings that cannot be used.
+
+    Attributes:
+        file: the file, or the name of what else holds the settings.
+        problems: every mistake found, one line each.
+    """
 
     def __init__(self, file: str, problems: list[str]) -> None:
         self.file = file
         self.problems = problems
         super().__init__("\n".join(f"{file}: {p}" for p in problems))
+
+
+class JobError(SettingsError):
+    """A job file that cannot be used."""
 
 
 class StockError(TwinError):
@@ -53,7 +62,7 @@ class CompareError(TwinError):
 
 
 class CutsError(JobError):
-    """A file of test cuts that cannot be used; ``problems`` holds every mistake found, one line each."""
+    """A file of test cuts that cannot be used."""
 
 
 class IdentifyError(TwinError):

@@ -6,7 +6,7 @@ import copy
 from pathlib import Path
 from typing import Any
 
-from twin.job.toml_text import toml_text
+from twin.settings.toml_text import toml_text
 
 SOUND: dict[str, Any] = {
     "program": {"file": "slot.nc", "dialect": "fanuc"},

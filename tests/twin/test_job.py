@@ -16,7 +16,7 @@ from support.job_files import NOTHING, SOUND, job_data, job_folder
 
 from twin.errors import JobError
 from twin.job import job_from_dict, job_schema, load_job
-from twin.job.toml_text import toml_text
+from twin.settings.toml_text import toml_text
 
 JOBS = sorted((Path(__file__).parents[2] / "examples").glob("*/job.toml"))
 EXAMPLES = [path for path in JOBS if "program" in tomllib.loads(path.read_text())]  # others are jobs of `twin mold`

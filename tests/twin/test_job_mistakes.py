@@ -243,9 +243,9 @@ def test_the_message_has_a_line_for_each_mistake_with_the_file_in_front(tmp_path
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("a = 1\n[program\n", "{path}:2:9: no valid TOML: expected ']' at the end of a table declaration"),
-        ("[program]\nfile = ", "{path}:2:8: no valid TOML: invalid value"),
-        ("a = 1\na = 2\n", "{path}:2:6: no valid TOML: cannot overwrite a value"),
+        ("a = 1\n[program\n", "{path}:2:9: not valid TOML: expected ']' at the end of a table declaration"),
+        ("[program]\nfile = ", "{path}:2:8: not valid TOML: invalid value"),
+        ("a = 1\na = 2\n", "{path}:2:6: not valid TOML: cannot overwrite a value"),
     ],
 )
 def test_what_is_no_toml_is_refused_with_its_place(text: str, message: str, tmp_path: Path) -> None:

@@ -18,9 +18,11 @@ from twin.cli.commands.replay import replay
 from twin.cli.commands.schema import schema
 from twin.cli.commands.verify import verify
 from twin.cli.commands.view import view
+from twin.cli.help import HelpCommand, HelpGroup
 
 app = typer.Typer(
     name="twin",
+    cls=HelpGroup,
     help="A machining digital twin: replays NC programs, removes material, predicts cutting forces.",
     epilog="Exit codes: 0 done, 1 a mistake that the message names, 2 wrong arguments, 3 a collision under --strict, "
     "4 out of tolerance, 130 Ctrl-C.",
@@ -44,9 +46,9 @@ for command in (
     mold,
     schema,
 ):
-    app.command()(command)
+    app.command(cls=HelpCommand)(command)
 # the former name of `twin reach`
-app.command("machinable", hidden=True)(reach)
+app.command("machinable", hidden=True, cls=HelpCommand)(reach)
 
 
 def _print_version(wanted: bool) -> None:

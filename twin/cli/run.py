@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from gcode.errors import GcodeError
 from twin.cli import exit_codes
-from twin.errors import JobError, TwinError
+from twin.errors import SettingsError, TwinError
 
 
 def main() -> None:
@@ -46,6 +46,6 @@ def message_of(error: TwinError | GcodeError) -> str:
     """What to print: a job file's mistakes as a list, a refused block with a caret under the word."""
     if isinstance(error, GcodeError):
         return error.underlined()
-    if isinstance(error, JobError) and len(error.problems) > 1:
+    if isinstance(error, SettingsError) and len(error.problems) > 1:
         return "\n".join([f"{error.file}: {len(error.problems)} mistakes", *(f"  {p}" for p in error.problems)])
     return str(error)

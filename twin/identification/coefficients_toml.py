@@ -11,7 +11,7 @@ from twin.errors import IdentifyError
 from twin.identification.estimate import CONFIDENCE
 from twin.identification.models.straight import NAMES
 from twin.identification.result import Identified
-from twin.job.toml_text import toml_text
+from twin.settings.toml_text import toml_text
 
 _UNITS = {name: "N/mm2" if name.endswith("c") else "N/mm" for name in NAMES}
 _DIGITS = 7

@@ -17,8 +17,8 @@ from twin.job.model import (
     Simulation,
     Stock,
     Tool,
+    job_schema,
 )
-from twin.job.schema import job_schema
 
 __all__ = [
     "Box",

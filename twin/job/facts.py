@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from twin.job.problems import Location
+from twin.settings.problems import Location
 
 
 class Facts:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import tomllib
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -14,15 +12,15 @@ from pydantic import BaseModel, ValidationError
 from twin.errors import JobError
 from twin.job.facts import Facts
 from twin.job.model import Job, JobFile
-from twin.job.problems import Location, Problem, problems_of
 from twin.job.rules import RULES
-from twin.job.toml_text import toml_text
+from twin.settings.problems import Location, Problem, problems_of
+from twin.settings.toml_file import read_toml
+from twin.settings.toml_text import toml_text
 
 _FILES: tuple[tuple[str, str], ...] = (
     *(("program", "file"), ("stock", "stl"), ("output", "mcap"), ("output", "rrd")),
     ("measured", "file"),
 )
-_TOML_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
 def load_job(path: str | PathLike[str]) -> Job:
@@ -32,31 +30,8 @@ def load_job(path: str | PathLike[str]) -> Job:
         JobError: the file cannot be read, is no TOML, or has mistakes: all of them are in the message.
     """
     path = Path(path)
-    data, text = read_toml(path)
+    data, text = read_toml(path, "a job file", JobError)
     return _job(data, path, text)
-
-
-def read_toml(path: Path, what: str = "a job file", refuse: type[JobError] = JobError) -> tuple[dict[str, Any], str]:
-    """A TOML file's tables and its text.
-
-    Args:
-        what: what the file should be, for the message.
-        refuse: the error for a file that cannot be read.
-
-    Raises:
-        JobError: ``refuse``, with the place of what is no TOML.
-    """
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        why = (error.strerror or str(error)).lower()
-        raise refuse(str(path), [f"cannot be read: {why}; expected {what} (TOML)"]) from error
-    except UnicodeDecodeError as error:
-        raise refuse(str(path), [f"byte {error.start} is not UTF-8; expected {what} (TOML)"]) from error
-    try:
-        return tomllib.loads(text), text
-    except tomllib.TOMLDecodeError as error:
-        raise _syntax_error(path, text, str(error), refuse) from error
 
 
 def job_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") -> Job:
@@ -69,15 +44,6 @@ def job_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") ->
         JobError: see `load_job`.
     """
     return _job(data, Path(folder) / "job.toml", toml_text(data))
-
-
-def _syntax_error(path: Path, text: str, message: str, refuse: type[JobError]) -> JobError:
-    """TOML's complaint with the place in front."""
-    lines = text.splitlines() or [""]
-    place = _TOML_PLACE.search(message)
-    line, column = (len(lines), len(lines[-1]) + 1) if place is None or place[1] is None else map(int, place.groups())
-    what = _TOML_PLACE.sub("", message)
-    return refuse(f"{path}:{line}:{column}", [f"no valid TOML: {what[:1].lower()}{what[1:]}"])
 
 
 def _job(data: Mapping[str, Any], path: Path, text: str) -> Job:

@@ -7,22 +7,18 @@ The descriptions are part of the error messages and of the JSON Schema. What con
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, Strict
+from pydantic import ConfigDict, Field, Strict
 
 from twin.errors import JobError
 from twin.record import ForceOn
+from twin.settings.schema import toml_schema
+from twin.settings.table import FilePath, Point, Table
 
-Point: TypeAlias = Annotated[tuple[float, float, float], Strict(False)]
-FilePath: TypeAlias = Annotated[Path, Strict(False)]
+#: The keys of a stock, of which one is given.
+STOCKS = ("box_mm", "cylinder_mm", "stl")
 WorkOffset: TypeAlias = Literal["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"]
-
-
-class Table(BaseModel):
-    """A table of the job file: unknown keys are refused, text is no number, true and false are no numbers either."""
-
-    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
 
 
 class Program(Table):
@@ -88,6 +84,8 @@ class Cylinder(Table):
 
 class Stock(Table):
     """The material before the first cut: a box, a cylinder, or a solid from an STL file."""
+
+    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": [key]} for key in STOCKS]})
 
     box_mm: Box | None = Field(default=None, description="a box")
     cylinder_mm: Cylinder | None = Field(default=None, description="a cylinder")
@@ -274,3 +272,8 @@ class Job(JobFile):
         """The same job without cutting coefficients."""
         tools = tuple(tool.model_copy(update={"cutting": None}) for tool in self.tools)
         return self.model_copy(update={"cutting": None, "tools": tools})
+
+
+def job_schema() -> dict[str, Any]:
+    """JSON Schema of a job file; `load_job` checks more."""
+    return toml_schema(JobFile, "Job of a machining twin")

@@ -8,14 +8,14 @@ from typing import TypeAlias
 
 from twin.errors import MeasuredError
 from twin.job.facts import Facts
-from twin.job.problems import Location, Problem, wrong
+from twin.job.model import STOCKS
 from twin.job.tool_rules import TOOL_RULES
 from twin.measured.axes import AxisMap
 from twin.measured.spans import parse_offset, parse_window
+from twin.settings.problems import Location, Problem, wrong
 
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
 
-_STOCKS = ("box_mm", "cylinder_mm", "stl")
 _MESH_ONLY = ("stl_scale", "offset_mm")
 #: More slices than this in all are taken for a slip of the decimal point.
 _MOST_SLICES = 1_000_000
@@ -27,8 +27,8 @@ def one_stock(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """The stock is given once; what belongs to a mesh stands only beside a mesh."""
     if facts.wrong("stock"):
         return
-    given = [key for key in _STOCKS if facts.given("stock", key)]
-    expected = "exactly one of " + ", ".join(_STOCKS)
+    given = [key for key in STOCKS if facts.given("stock", key)]
+    expected = "exactly one of " + ", ".join(STOCKS)
     if not given:
         yield Problem(("stock",), f" is empty: expected {expected}")
     elif len(given) > 1:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from twin.job.facts import ToolFacts
-from twin.job.problems import Problem, missing, wrong
+from twin.settings.problems import Problem, missing, wrong
 
 #: Which kinds need a key (True), may have it (False), or must not have it (not listed).
 _SHAPE_KEYS = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from os import PathLike
 from pathlib import Path
@@ -11,8 +10,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from twin.errors import JobError, ToolError
-from twin.job.problems import Problem, missing, problems_of, wrong
 from twin.moldmaking.model import MoldFile, MoldJob
+from twin.settings.problems import Problem, missing, problems_of, wrong
+from twin.settings.toml_file import read_toml
 from twin.tools.shape import ToolShape, tool_shape
 
 _STAGES = ("rough", "semi", "finish")
@@ -25,15 +25,7 @@ def load_mold(path: str | PathLike[str]) -> MoldJob:
         JobError: the file cannot be read, is not TOML, or has mistakes; the message lists all of them.
     """
     path = Path(path)
-    try:
-        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-    except OSError as error:
-        why = (error.strerror or str(error)).lower()
-        raise JobError(str(path), [f"cannot be read: {why}; expected a mold job (TOML)"]) from error
-    except UnicodeDecodeError as error:
-        raise JobError(str(path), [f"byte {error.start} is not UTF-8; expected a mold job (TOML)"]) from error
-    except tomllib.TOMLDecodeError as error:
-        raise JobError(str(path), [f"no valid TOML: {error}"]) from error
+    data, _ = read_toml(path, "a mold job", JobError)
     return _job(data, path)
 
 

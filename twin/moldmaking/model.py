@@ -10,7 +10,8 @@ from pydantic import Field, Strict, model_validator
 
 from twin.cam.passes.roughing import StageFeeds
 from twin.cam.path.machining_time import Dynamics
-from twin.job.model import Box, FilePath, Point, Table, Tool
+from twin.job.model import Box, Tool
+from twin.settings.table import FilePath, Point, Table
 
 
 class Part(Table):

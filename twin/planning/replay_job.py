@@ -11,7 +11,7 @@ from typing import Any
 from twin.arrays import FloatArray
 from twin.cam.path.to_nc import NcOptions, Operation, describe, kind_of
 from twin.errors import ToolPathError
-from twin.job.toml_text import toml_text
+from twin.settings.toml_text import toml_text
 
 #: The replay has at least this many slices over the diameter of the smallest tool.
 _SLICES_PER_DIAMETER = 20.0

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError, model_validator
 
 from twin.errors import ToolPathError
-from twin.job.problems import problems_of
+from twin.settings.problems import problems_of
 
 Corners = Annotated[tuple[float, float, float, float], Strict(False)]
 Box = Annotated[tuple[float, float, float, float, float, float], Strict(False)]

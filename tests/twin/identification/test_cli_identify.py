@@ -20,7 +20,7 @@ from twin.identification.cuts.load import cuts_from_dict
 from twin.identification.identify import identify
 from twin.identification.models.straight import NAMES
 from twin.job import load_job
-from twin.job.toml_text import toml_text
+from twin.settings.toml_text import toml_text
 
 PNG = b"\x89PNG\r\n"
 

@@ -190,7 +190,7 @@ def test_a_name_on_the_command_line_is_checked_too() -> None:
     ("content", "message"),
     [
         (None, "cannot be read: no such file or directory; expected a file of test cuts (TOML)"),
-        (b"[tool\n", "no valid TOML"),
+        (b"[tool\n", "not valid TOML"),
         (b"\xff\xfe\x00", "byte 0 is not UTF-8; expected a file of test cuts (TOML)"),
     ],
 )

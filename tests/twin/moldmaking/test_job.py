@@ -63,7 +63,7 @@ def test_no_toml_and_no_file(tmp_path: Path) -> None:
     with pytest.raises(JobError, match="cannot be read"):
         load_mold(tmp_path / "none.toml")
     (tmp_path / "bad.toml").write_text("[part\n")
-    with pytest.raises(JobError, match="no valid TOML"):
+    with pytest.raises(JobError, match="not valid TOML"):
         load_mold(tmp_path / "bad.toml")
 
 

@@ -14,10 +14,10 @@ from tests.support.recording import Recording
 from twin.cli import run
 from twin.errors import ToolPathError
 from twin.job import load_job
-from twin.job.toml_text import toml_text
 from twin.moldmaking import STAGES, MoldPlan
 from twin.moldmaking.pictures import draw
 from twin.moldmaking.programs import write_programs
+from twin.settings.toml_text import toml_text
 from twin.verification.deviation import Limits, deviation
 from twin.verification.machining import machined
 

@@ -8,8 +8,9 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import Field, Strict
 
 from twin.identification.models.straight import Direction
-from twin.job.model import FilePath, Point, Table, Tool
+from twin.job.model import Tool
 from twin.record import ForceOn
+from twin.settings.table import FilePath, Point, Table
 
 Name: TypeAlias = Literal["Ktc", "Kte", "Krc", "Kre", "Kac", "Kae"]
 Method: TypeAlias = Literal["mean", "iterative", "waveform"]

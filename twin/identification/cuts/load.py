@@ -14,8 +14,8 @@ from twin.errors import CutsError
 from twin.identification.cuts.cuts_file import Cuts, CutsFile
 from twin.identification.cuts.rules import RULES
 from twin.job.facts import Facts
-from twin.job.load import read_toml
-from twin.job.problems import Location, Problem, problems_of, wrong
+from twin.settings.problems import Location, Problem, problems_of, wrong
+from twin.settings.toml_file import read_toml
 
 #: Keys whose default says "as the cuts need it".
 _NO_DEFAULT = (("tool", "flute_length_mm"),)

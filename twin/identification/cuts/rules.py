@@ -8,9 +8,9 @@ from typing import Any, TypeAlias
 
 from twin.errors import MeasuredError
 from twin.job.facts import Facts, ToolFacts
-from twin.job.problems import Location, Problem, missing, wrong
 from twin.job.tool_rules import TOOL_RULES
 from twin.measured.axes import AxisMap
+from twin.settings.problems import Location, Problem, missing, wrong
 
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
 

@@ -21,12 +21,12 @@ def _sections(data: Mapping[str, Any]) -> Iterator[str]:
     tables = {name: _tables(value) for name, value in data.items()}
     for name, value in data.items():
         if not tables[name]:
-            yield f"{_key(name)} = {_value(value)}"
+            yield f"{_key(name)} = {toml_value(value)}"
     for name, found in tables.items():
         mark = "[{}]" if isinstance(data[name], Mapping) else "[[{}]]"
         for table in found:
             yield mark.format(_key(name))
-            yield from (f"{_key(key)} = {_value(inner)}" for key, inner in table.items())
+            yield from (f"{_key(key)} = {toml_value(inner)}" for key, inner in table.items())
             yield ""
 
 
@@ -49,16 +49,19 @@ def _text(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _value(value: object) -> str:
+def toml_value(value: object) -> str:
+    """A value on one line; tables inline."""
     match value:
         case bool():
             return str(value).lower()
         case str() | PurePath():
             return _text(str(value))
+        case Mapping() if not value:
+            return "{}"
         case Mapping():
-            return f"{{ {', '.join(f'{_key(k)} = {_value(v)}' for k, v in value.items())} }}"
+            return f"{{ {', '.join(f'{_key(k)} = {toml_value(v)}' for k, v in value.items())} }}"
         case list() | tuple():
-            return f"[{', '.join(map(_value, value))}]"
+            return f"[{', '.join(map(toml_value, value))}]"
         case float():
             return repr(float(value))
         case _:

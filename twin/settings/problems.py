@@ -1,19 +1,20 @@
-"""Mistakes in a job file in words: where, the value found, and what is allowed."""
+"""Mistakes in a settings file in words: the key, the value found, and what is allowed."""
 
 from __future__ import annotations
 
 import difflib
-import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
-from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, TypeAlias, Union, get_args, get_origin
+from typing import Any, Literal, TypeAlias, get_args, get_origin
 
 import annotated_types as at
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
+
+from twin.settings.keys import bare
+from twin.settings.toml_text import toml_value
 
 Location: TypeAlias = tuple[str | int, ...]
 
@@ -70,20 +71,8 @@ def key_path(location: Location) -> str:
 
 def show(value: object) -> str:
     """A value as TOML writes it, shortened."""
-    text = _toml(value)
+    text = toml_value(value)
     return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 4]} ..."
-
-
-def _toml(value: object) -> str:
-    if isinstance(value, str | PurePath):
-        return json.dumps(str(value), ensure_ascii=False)
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, Mapping):
-        return f"{{ {', '.join(f'{k} = {_toml(v)}' for k, v in value.items())} }}" if value else "{}"
-    if isinstance(value, list | tuple):
-        return f"[{', '.join(map(_toml, value))}]"
-    return str(value)
 
 
 def problems_of(errors: Sequence[ErrorDetails], model: type[BaseModel]) -> Iterator[Problem]:
@@ -131,23 +120,11 @@ def _declared(location: Location, model: type[BaseModel]) -> tuple[Any, FieldInf
     for key in location:
         if isinstance(annotation, type) and issubclass(annotation, BaseModel):
             field = annotation.model_fields[str(key)]
-            annotation = _bare(field.annotation)
+            annotation = bare(field.annotation)
         else:
             field = None
-            annotation = _bare(_inner(annotation))
+            annotation = bare(_inner(annotation))
     return annotation, field
-
-
-def _bare(annotation: Any) -> Any:
-    """A type without None beside it and without notes."""
-    while True:
-        origin = get_origin(annotation)
-        if origin is Annotated:
-            annotation = get_args(annotation)[0]
-        elif origin in (Union, UnionType):
-            annotation = next(a for a in get_args(annotation) if a is not NoneType)
-        else:
-            return annotation
 
 
 def _inner(annotation: Any) -> Any:
@@ -162,10 +139,10 @@ def allowed(annotation: Any, notes: Iterable[Any] = ()) -> str:
     Args:
         notes: bounds that belong to it.
     """
-    annotation = _bare(annotation)
+    annotation = bare(annotation)
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Literal:
-        return "one of " + ", ".join(map(_toml, arguments))
+        return "one of " + ", ".join(map(toml_value, arguments))
     if origin is list:
         return _allowed_list((*arguments, ...))
     if origin is tuple:
@@ -182,7 +159,7 @@ def allowed(annotation: Any, notes: Iterable[Any] = ()) -> str:
 def _allowed_list(items: tuple[Any, ...]) -> str:
     if items[-1] is not Ellipsis:
         return f"a list of {_COUNTS[len(items)]} numbers"
-    inner = _bare(items[0])
+    inner = bare(items[0])
     if get_origin(inner) is tuple:
         return f"a list of {_allowed_list(get_args(inner)).replace('a list', 'lists')}"
     if not isinstance(inner, type):

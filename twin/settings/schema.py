@@ -1,15 +1,12 @@
-"""The job file as a JSON Schema, for editors."""
+"""A settings table as a JSON Schema, for editors."""
 
 from __future__ import annotations
 
 from typing import Any
 
+from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
-
-from twin.job.model import JobFile
-
-_STOCKS = ("box_mm", "cylinder_mm", "stl")
 
 
 class _TomlSchema(GenerateJsonSchema):
@@ -24,11 +21,10 @@ class _TomlSchema(GenerateJsonSchema):
         return super().default_schema(schema)
 
 
-def job_schema() -> dict[str, Any]:
-    """JSON Schema (draft 2020-12) of a job file.
+def toml_schema(model: type[BaseModel], title: str) -> dict[str, Any]:
+    """JSON Schema (draft 2020-12) of a TOML file with a model's keys.
 
-    What one key says about another is not in it, but for the one stock: `load_job` checks more.
+    Rules between keys are not in it; reading the file checks more.
     """
-    schema = JobFile.model_json_schema(schema_generator=_TomlSchema)
-    schema["$defs"]["Stock"]["oneOf"] = [{"required": [key]} for key in _STOCKS]
-    return {"$schema": GenerateJsonSchema.schema_dialect, **schema, "title": "Job of a machining twin"}
+    schema = model.model_json_schema(schema_generator=_TomlSchema)
+    return {"$schema": GenerateJsonSchema.schema_dialect, **schema, "title": title}

@@ -1,0 +1,37 @@
+"""Help texts name values by what they are (``MM``, ``FILE``, ``N``), not by Python's types, and flags by nothing."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Any, TypeVar
+
+from typer.core import TyperCommand, TyperGroup, TyperOption
+
+from twin.cli.options import type_metavar
+
+_Parameter = TypeVar("_Parameter")
+
+
+class HelpCommand(TyperCommand):
+    """A command with such a help text."""
+
+    def get_params(self, ctx: Any) -> Any:
+        """Its parameters, ``--help`` among them."""
+        return _named(super().get_params(ctx))
+
+
+class HelpGroup(TyperGroup):
+    """The program itself, with such a help text."""
+
+    def get_params(self, ctx: Any) -> Any:
+        """Its parameters, ``--help`` among them."""
+        return _named(super().get_params(ctx))
+
+
+def _named(parameters: list[_Parameter]) -> list[_Parameter]:
+    for parameter in parameters:
+        if isinstance(parameter, TyperOption) and parameter.metavar is None:
+            annotation = parameter.type_descriptor.annotation
+            if not (isinstance(annotation, type) and issubclass(annotation, Enum)):
+                parameter.metavar = type_metavar(annotation)
+    return parameters

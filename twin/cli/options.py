@@ -1,0 +1,138 @@
+"""Options of a command made from the fields of a settings table: name, type, help, default and unit are the field's."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Collection, Mapping
+from pathlib import PurePath
+from typing import Any, Literal, get_args, get_origin
+
+import typer
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from rich.markup import escape
+
+from twin.settings.keys import bare, default_text, key_of, option_names, without_unit
+
+Command = Callable[..., None]
+_METAVARS: dict[type, str] = {bool: "", int: "N", float: "NUMBER", str: "TEXT", PurePath: "FILE"}
+
+
+def options_from(
+    model: type[BaseModel], into: str, *, omit: Collection[str] = (), panel: str | None = None
+) -> Callable[[Command], Command]:
+    """Replace a command's parameter by one option for each field of a table.
+
+    The command gets in that parameter the values of the options that were given, by key: an option that was not given
+    is not in it, so that a file's value or the default holds. ``panel`` is the heading above the options in the help.
+
+    Args:
+        into: name of the command's parameter, a mapping.
+        omit: keys without an option.
+
+    Raises:
+        ValueError: two keys with one option.
+        TypeError: a key whose type no option can give.
+    """
+    fields = {name: field for name, field in model.model_fields.items() if name not in omit}
+    _refuse_double_names(fields)
+
+    def decorate(function: Command) -> Command:
+        parameters: list[inspect.Parameter] = []
+        for parameter in inspect.signature(function, eval_str=True).parameters.values():
+            if parameter.name == into:
+                parameters += [_parameter(name, field, panel) for name, field in fields.items()]
+            else:
+                parameters.append(parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY))
+
+        @functools.wraps(function)
+        def command(**values: Any) -> None:
+            taken = {name: values.pop(name) for name in fields}
+            function(**values, **{into: {name: value for name, value in taken.items() if value is not None}})
+
+        command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        command.__annotations__ = {p.name: p.annotation for p in parameters}
+        return command
+
+    return decorate
+
+
+def _refuse_double_names(fields: Mapping[str, FieldInfo]) -> None:
+    keys: dict[str, str] = {}
+    for key, field in fields.items():
+        for option in (o for names in option_names(key, field) for o in names.split("/")):
+            if keys.setdefault(option, key) != key:
+                raise ValueError(f"{option} is the option of {keys[option]} and of {key}")
+
+
+def _parameter(name: str, field: FieldInfo, panel: str | None) -> inspect.Parameter:
+    """A parameter as typer reads it; its own default is None: not given."""
+    annotation = str if key_of(field).as_text else _typed(field.annotation)
+    option = typer.Option(
+        None,
+        *option_names(name, field),
+        help=_help(name, field, repeated=get_origin(annotation) is list),
+        metavar=_metavar(name, field, annotation),
+        rich_help_panel=panel,
+        show_default=False,
+    )
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=option, annotation=annotation | None)
+
+
+def _typed(annotation: Any) -> Any:
+    """A field's type as typer knows it: a list where an option may be repeated.
+
+    Raises:
+        TypeError: a type that one option cannot give.
+    """
+    annotation = bare(annotation)
+    origin, arguments = get_origin(annotation), [bare(a) for a in get_args(annotation)]
+    if origin is Literal or annotation in (bool, int, float, str):
+        return annotation
+    if isinstance(annotation, type) and issubclass(annotation, PurePath):
+        return annotation
+    if origin is list or (origin is tuple and arguments[-1] is Ellipsis):
+        return list[_typed(arguments[0])]  # type: ignore[misc]
+    if origin is tuple:
+        return tuple.__class_getitem__(tuple(map(_typed, arguments)))
+    raise TypeError(f"no option can give {annotation}")
+
+
+def _help(name: str, field: FieldInfo, *, repeated: bool) -> str:
+    """The description as a sentence, with the default after it."""
+    text = field.description or without_unit(name)[0].replace("_", " ")
+    text = f"{text[:1].upper()}{text[1:]}{'; may be repeated' if repeated else ''}."
+    default = _shown_default(name, field)
+    return escape(text) + (f" [dim]{escape(f'[default: {default}]')}[/dim]" if default else "")
+
+
+def _shown_default(name: str, field: FieldInfo) -> str | None:
+    """A default as the command line writes it: the name of a pair's option, text without quotes."""
+    value = None if field.is_required() else field.get_default(call_default_factory=True)
+    if isinstance(value, bool):
+        pair = option_names(name, field)[0].split("/")
+        return pair[not value].lstrip("-") if len(pair) == 2 else None
+    return str(value) if isinstance(value, str) else default_text(field)
+
+
+def _metavar(name: str, field: FieldInfo, annotation: Any) -> str | None:
+    """What stands for the value in the help: its unit where it has one; typer lists choices itself."""
+    given = key_of(field).metavar
+    if given is not None or get_origin(annotation) is Literal:
+        return given
+    items = get_args(annotation) or (annotation,)
+    unit = without_unit(name)[1]
+    return " ".join(unit or type_metavar(item) or "TEXT" for item in items) if items != (bool,) else ""
+
+
+def type_metavar(annotation: Any) -> str | None:
+    """What stands for a value of a type in the help: nothing for a flag; None for a type that has no word."""
+    kinds = (kind for kind in _METAVARS if isinstance(annotation, type) and issubclass(annotation, kind))
+    kind = next(kinds, None)
+    return None if kind is None else _METAVARS[kind]
+
+
+def option_of(model: type[BaseModel], key: str) -> str:
+    """The option that gives a key: ``--feed`` for ``feed_mm_min``."""
+    return option_names(key, model.model_fields[key])[0].split("/")[0]

@@ -1,0 +1,35 @@
+"""The base of every settings table, and what a field adds to its type and description."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Strict
+
+Point: TypeAlias = Annotated[tuple[float, float, float], Strict(False)]
+FilePath: TypeAlias = Annotated[Path, Strict(False)]
+
+
+class Table(BaseModel):
+    """A table of a settings file: unknown keys are refused, text is not a number, nor are true and false."""
+
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Key:
+    """How a key is shown to its users; stands in the field's annotation: ``Annotated[float, Key(unset="...")]``.
+
+    Attributes:
+        options: names of the command line's option, a pair as ``--climb/--conventional``; made from the key if empty.
+        metavar: what stands for the option's value in the help; made from the key's unit if not given.
+        unset: what holds where the key is not given and has no default, e.g. ``0.4 of the diameter``.
+        as_text: the option takes one text, which the field's validator reads.
+    """
+
+    options: tuple[str, ...] = ()
+    metavar: str | None = None
+    unset: str | None = None
+    as_text: bool = False

@@ -1,0 +1,84 @@
+"""TOML files in, with one clear error for each thing that can be wrong with the text."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from twin.errors import SettingsError
+from twin.settings.problems import problems_of
+
+_Model = TypeVar("_Model", bound=BaseModel)
+_POSITION = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+
+
+def read_toml(
+    path: Path, what: str = "settings", refuse: type[SettingsError] = SettingsError
+) -> tuple[dict[str, Any], str]:
+    """A TOML file's tables and its text.
+
+    Args:
+        what: what the file should be, for the message.
+        refuse: the error for a file that cannot be read.
+
+    Raises:
+        SettingsError: ``refuse``: not readable, not UTF-8, or, with line and column, not TOML.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        why = (error.strerror or str(error)).lower()
+        raise refuse(str(path), [f"cannot be read: {why}; expected {what} (TOML)"]) from error
+    except UnicodeDecodeError as error:
+        raise refuse(str(path), [f"byte {error.start} is not UTF-8; expected {what} (TOML)"]) from error
+    return parse_toml(text, str(path), refuse), text
+
+
+def parse_toml(text: str, source: str, refuse: type[SettingsError] = SettingsError) -> dict[str, Any]:
+    """The tables of a TOML text.
+
+    Args:
+        source: its file, for the message.
+
+    Raises:
+        SettingsError: ``refuse``, with line and column of what is not TOML.
+    """
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise _syntax_error(source, text, str(error), refuse) from error
+
+
+def checked(
+    model: type[_Model], values: Mapping[str, Any], source: str, refuse: type[SettingsError] = SettingsError
+) -> _Model:
+    """A table's values as its model.
+
+    Args:
+        source: file, or what else holds the values, for the message.
+
+    Raises:
+        SettingsError: ``refuse``, with every mistake.
+    """
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        found = error.errors(include_url=False)
+        texts = [str(p) for p in problems_of([e for e in found if e["loc"]], model)]
+        texts += [e["msg"].removeprefix("Value error, ") for e in found if not e["loc"]]
+        raise refuse(source, texts) from None
+
+
+def _syntax_error(source: str, text: str, message: str, refuse: type[SettingsError]) -> SettingsError:
+    """TOML's complaint with the position in front."""
+    lines = text.splitlines() or [""]
+    position = _POSITION.search(message)
+    end = (len(lines), len(lines[-1]) + 1)
+    line, column = end if position is None or position[1] is None else map(int, position.groups())
+    what = _POSITION.sub("", message)
+    return refuse(f"{source}:{line}:{column}", [f"not valid TOML: {what[:1].lower()}{what[1:]}"])
