@@ -23,9 +23,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks.report import report
-from gcode.bulk.arrays import motion_arrays
 from gcode.bulk.plain_runs import PlainStart, plain_run
 from gcode.flow.interpret import interpret
+from gcode.report.motion_arrays import motion_arrays
 
 RS274 = shutil.which("rs274")
 POINTS_A_PASS = 400

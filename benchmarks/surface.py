@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from benchmarks.report import report
-from gcode.bulk.arrays import motion_arrays
+from gcode.report.motion_arrays import motion_arrays
 from twin.motion.sweep import Body, Sweep
 from twin.tolerance import Tolerance
 from twin.tools.shape import tool_shape

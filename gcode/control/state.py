@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from gcode.control.frame import ORIGIN, SAME_PLACE_MM, Frame, Turning, frame_of, rotation
+from gcode.control.coordinates import ORIGIN, SAME_PLACE_MM, Frame, Turning, frame_of, rotation
+from gcode.control.waiting import WaitingPath
 from gcode.dialects import Dialect
 from gcode.events import NO_EXTRA, Extra, MotionState, Point
 from gcode.settings import MachineSettings, ToolOffset
-
-if TYPE_CHECKING:
-    from gcode.phases.tool_path import Path
 
 MM_PER_INCH = 25.4
 AXES = "XYZ"
@@ -143,7 +141,7 @@ class State:
         frame: program coordinates in machine coordinates; follows from the others (`reframed`).
         position_mm: controlled point as programmed, machine coordinates, mm.
         extra: positions of the further axes, machine coordinates.
-        path: corners and cutter compensation that wait for the next motion.
+        waiting: corner and cutter compensation that wait for the next motion, None where nothing waits.
         started: True once a percent sign or a block with words was read.
         ended: True after the program's end.
     """
@@ -155,9 +153,14 @@ class State:
     frame: Frame
     position_mm: Point
     extra: Extra = NO_EXTRA
-    path: Path | None = None
+    waiting: WaitingPath | None = None
     started: bool = False
     ended: bool = False
+
+    @property
+    def compensates(self) -> bool:
+        """True while cutter compensation is on."""
+        return self.waiting is not None and self.waiting.compensates
 
     @property
     def tool_offset_mm(self) -> Point:

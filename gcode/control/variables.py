@@ -1,11 +1,12 @@
-"""The variables of both macro languages: locals of every level of calls, common ones, and the control's by a hook."""
+"""The variables of both macro languages: locals of every level of calls, common ones, and those of the control."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Protocol
 
-from gcode.language.expressions import EvaluationError, MacroLanguage, Scope, variable_number
-from gcode.language.statements import Variable
+from gcode.dialects.macro_language import MacroLanguage
+from gcode.language.expressions import EvaluationError, Scope, Variable, variable_number
 
 #: Common variables of FANUC: volatile and kept ones.
 _COMMON = (range(100, 200), range(500, 1000))
@@ -17,14 +18,25 @@ _SETTABLE = frozenset({"_value", "_value_returned"})
 _MOST_NAMES = 10_000
 
 
+class ControlVariables(Protocol):
+    """Access to the variables that belong to the control and not to the program."""
+
+    def read(self, index: int) -> float | None:
+        """Value of #index; raises `EvaluationError` for a variable that does not exist."""
+
+    def write(self, index: int, value: float | None) -> None:
+        """Sets #index; raises `EvaluationError` for a variable that cannot be set."""
+
+    def named(self, name: str) -> float | None:
+        """Value of #<name>, None where the control has none of that name."""
+
+
 class Variables:
     """Values of variables while a program runs; it is its own `Scope`.
 
     Args:
         language: whose rules hold.
-        system: reads a variable that is none of the program's own; raises `EvaluationError` for one that is not there.
-        set_system: writes one.
-        system_name: reads a named one that is the control's, None where there is none of that name.
+        control: the variables that are not the program's own.
         initial: values at the start.
         steps: least input increments of an address that make one unit, 0 where its numbers are not rounded.
     """
@@ -33,16 +45,12 @@ class Variables:
         self,
         language: MacroLanguage,
         *,
-        system: Callable[[int], float | None],
-        set_system: Callable[[int, float | None], None],
-        system_name: Callable[[str], float | None],
+        control: ControlVariables,
         initial: Mapping[int, float],
         steps: Callable[[str], int],
     ) -> None:
         self._language = language
-        self._system = system
-        self._set_system = set_system
-        self._system_name = system_name
+        self._control = control
         self._steps = steps
         self._own = _COMMON if language.vacant else (_GLOBALS,)
         self._common: dict[int, float] = {n: v for n, v in initial.items() if self._is_common(n)}
@@ -80,7 +88,7 @@ class Variables:
             return self._common.get(index, missing)
         if index == 0 and self._language.vacant:
             return None
-        return self._system(index)
+        return self._control.read(index)
 
     def named(self, name: str) -> float | None:
         """Value of #<name>.
@@ -91,14 +99,14 @@ class Variables:
         table = self._table(name)
         if name in table:
             return table[name]
-        value = self._system_name(name)
+        value = self._control.named(name)
         if value is None:
             raise EvaluationError("unknown-variable", f"#<{name}> was not set", "a value for it before")
         return value
 
     def exists(self, name: str) -> bool:
         """True where #<name> was set, or is the control's."""
-        return name in self._table(name) or self._system_name(name) is not None
+        return name in self._table(name) or self._control.named(name) is not None
 
     def has(self, index: int) -> bool:
         """True where there is a variable #index."""
@@ -133,7 +141,7 @@ class Variables:
     def set_named(self, name: str, value: float) -> None:
         """Sets #<name>; one with a leading underscore holds in all levels."""
         table = self._table(name)
-        if self._system_name(name) is not None and name not in _SETTABLE:
+        if self._control.named(name) is not None and name not in _SETTABLE:
             raise EvaluationError("read-only-variable", f"#<{name}> is the control's", "a name of the program's own")
         if len(table) >= _MOST_NAMES and name not in table:
             raise EvaluationError("too-many-variables", f"#<{name}> is one too many", f"at most {_MOST_NAMES} names")
@@ -148,7 +156,7 @@ class Variables:
         elif index == 0:
             raise EvaluationError("read-only-variable", "#0 cannot be set", "a variable that can be written")
         else:
-            self._set_system(index, value)
+            self._control.write(index, value)
             return
         if value is None:
             table.pop(index, None)

@@ -13,7 +13,7 @@ from typing import Literal
 
 from gcode.cycles import CycleRules
 from gcode.dialects.codes import Table
-from gcode.language.expressions import MacroLanguage
+from gcode.dialects.macro_language import MacroLanguage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gcode.cycles import FANUC_CYCLES
 from gcode.dialects.base import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.codes import CYCLES, FULL, Table, executed, neutral, noticed, owning, refused
-from gcode.language.expressions import FANUC_MACRO
+from gcode.dialects.macro_language import FANUC_MACRO
 
 FIVE_AXIS = "five-axis machining"
 #: Words of every cycle: hole, levels, peck, dwell or shift, repeats.

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from gcode.dialects.codes import COMMON, CYCLES, Table, executed, neutral, noticed, owning, refused
 from gcode.dialects.linuxcnc import LINUXCNC
-from gcode.language.expressions import NO_MACRO
+from gcode.dialects.macro_language import NO_MACRO
 
 CODES: Table = {
     **{code: rule for code, rule in COMMON.items() if code not in ("G43", "G40", "G90.1")},

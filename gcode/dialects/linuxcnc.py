@@ -5,7 +5,7 @@ from __future__ import annotations
 from gcode.cycles import LINUXCNC_CYCLES
 from gcode.dialects.base import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.codes import FULL, Table, executed, noticed, owning, refused
-from gcode.language.expressions import LINUXCNC_MACRO
+from gcode.dialects.macro_language import LINUXCNC_MACRO
 
 _ALL = "XYZABC"
 #: Axis words of a motion, and the polar ones.

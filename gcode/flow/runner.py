@@ -1,31 +1,33 @@
-"""Runs a program: which block comes next, through subprograms, macros, jumps and loops.
+"""Runs a program: which line comes next, and what executes its block.
 
-What a block of words does is `step`, a pure function; what a statement of the macro language does is `flow`. Here the
-two are fed with lines, and their refusals handed to whoever runs the program.
+Blocks of words are executed by `step`, a pure function; statements of the macro languages by `jumps` and `owords`,
+calls by `subprograms`. All of them share a `Session`. Refusals are handed to the caller.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import replace
-from typing import NoReturn
 
 from gcode.bulk.plain_runs import MAX_LINES, PlainBatch, PlainRun, PlainStart, plain_run
-from gcode.control.state import Setup, State, initial_state
-from gcode.control.variables import Variables
+from gcode.control.state import State
 from gcode.dialects import Dialect
 from gcode.errors import GcodeError, Place
 from gcode.events import ArcMotion, Event, LinearMotion, Notice
-from gcode.flow import jumps
+from gcode.flow import jumps, owords, subprograms
 from gcode.flow.call_stack import Level
-from gcode.flow.calls import CallRequest, Library, StateRequest
+from gcode.flow.evaluation import evaluated
 from gcode.flow.leader import leader_end
 from gcode.flow.recover import recovered
+from gcode.flow.requests import CallRequest, StateRequest
+from gcode.flow.session import Session
 from gcode.flow.step import step
 from gcode.flow.system_variables import SystemVariables
-from gcode.language.blocks import ParsedBlock
+from gcode.language.blocks import OWord, ParsedBlock
 from gcode.language.parse import parse_blocks
 from gcode.language.program import Program, Spot
+from gcode.phases.cutter_compensation import flushed
+from gcode.phases.g10 import skipped_data
 from gcode.settings import MachineSettings
 
 #: Parsed lines that are kept, for programs that jump and call.
@@ -33,16 +35,17 @@ _KEPT_LINES = 50_000
 
 
 class Runner:
-    """One run of one program.
+    """Runs one program: reads its lines and hands each block to what executes it.
+
+    Args:
+        program: the main program.
+        dialect: the control whose language it is in.
+        settings: the machine at the program's start.
+        refuse: takes each refusal; if it returns, the program continues.
+        bulk: take runs of plain straight motions at once, for speed.
 
     Attributes:
-        state: the control as it stands.
-        levels: the call stack, the main program first.
-        variables: of the macro language.
-        spare: parameters of LinuxCNC that have no meaning here, by number.
-        pending: events that an assignment made.
-        last_label: number of the last N word.
-        place: of the present line.
+        session: the memory of this run.
     """
 
     def __init__(
@@ -54,58 +57,22 @@ class Runner:
         *,
         bulk: bool = True,
     ) -> None:
-        self.state: State = initial_state(dialect, settings)
-        self.settings = settings
-        self.dialect = dialect
-        self.library = Library(settings.search_path)
-        self.levels = [Level(program=program, spot=Spot(0, 1))]
-        self.system = SystemVariables(self)
-        self.variables = Variables(
-            dialect.macro,
-            system=self.system.read,
-            set_system=self.system.write,
-            system_name=self.system.named,
-            initial=settings.variables,
-            steps=self.steps_of,
-        )
-        self.spare: dict[int, tuple[float, Setup]] = {}
-        self.pending: list[Event] = []
-        self.last_label = 0
-        self.modal_macro: jumps.ModalMacro | None = None
+        self.session = Session(program, dialect, settings, SystemVariables)
         self._refuse = refuse
         self._bulk = bulk
-        self._blocks = 0
-        self._jumps = 0
-        self._line_offset = 0
         self._parsed: dict[tuple[int, int], tuple[tuple[ParsedBlock, ...], int]] = {}
-        self.place = Place(file=program.file, line=1)
-
-    @property
-    def level(self) -> Level:
-        """The innermost level."""
-        return self.levels[-1]
-
-    @property
-    def least_increments(self) -> int:
-        """Least input increments of a length that make one unit: 0.001 mm, or 0.0001 inch."""
-        return 1000 if self.state.modes.unit_mm == 1.0 else 10_000
-
-    def steps_of(self, letter: str) -> int:
-        """Parts of a unit to which a worked out number of an address is rounded, 0 for no rounding."""
-        if letter in self.dialect.increment_letters:
-            return self.least_increments
-        return int(letter in self.dialect.whole_letters)
 
     def run(self) -> Iterator[Event | PlainBatch]:
-        """The events of the program; refused blocks go to `refuse`, and if that returns, the program goes on."""
-        yield from self._begin()
-        while not self.state.ended:
+        """The events of the program; refused blocks go to `refuse`, and if that returns, the program continues."""
+        session = self.session
+        yield from self._skip_leader()
+        while not session.state.ended:
             batch = self._plain() if self._bulk else None
             if batch is not None:
                 yield batch
                 continue
             block: ParsedBlock | None = None
-            before = self.state
+            before = session.state
             try:
                 block = self._next_block()
                 if block is None:
@@ -114,11 +81,12 @@ class Runner:
                 yield from self._execute(block)
             except GcodeError as error:
                 self._refuse(error)
-                self.state = recovered(before, block, error) if block is not None else self.state
+                if block is not None:
+                    session.state = recovered(before, block, error)
 
-    def _begin(self) -> Iterator[Event]:
-        level = self.level
-        leader = leader_end(level.program, self.dialect)
+    def _skip_leader(self) -> Iterator[Event]:
+        level = self.session.level
+        leader = leader_end(level.program, self.session.dialect)
         if leader is not None:
             level.spot = leader
             place = Place(file=level.program.file, line=max(leader.line - 1, 1))
@@ -127,130 +95,104 @@ class Runner:
 
     def _next_block(self) -> ParsedBlock | None:
         """The next block of the innermost level, None at the end of its text."""
-        level = self.level
+        session, level = self.session, self.session.level
         if level.queue:
             return level.queue.pop(0)
         offset = level.spot.offset
         if offset >= level.program.size:
             return None
-        self._line_offset = offset
+        session.line_offset = offset
         key = (id(level.program), offset)
         known = self._parsed.get(key)
         if known is None:
             known = self._parse_line(level, offset, key)
         blocks, level_next = known
         line = level.spot.line
-        self._count_block(line)
+        session.count_blocks(line)
         level.spot = Spot(level_next, line + 1)
         if not blocks:
             return ParsedBlock(place=Place(file=level.program.file, line=line, calls=level.calls))
         if level.calls:
             blocks = tuple(replace(block, place=replace(block.place, calls=level.calls)) for block in blocks)
         level.queue.extend(blocks[1:])
-        self.place = blocks[0].place
+        session.place = blocks[0].place
         return blocks[0]
 
     def _parse_line(self, level: Level, offset: int, key: tuple[int, int]) -> tuple[tuple[ParsedBlock, ...], int]:
+        session = self.session
         text, following = level.program.line_at(offset)
         place = Place(file=level.program.file, line=level.spot.line, text=text, calls=level.calls)
         try:
-            blocks = parse_blocks(place, self.dialect, block_delete=self.settings.block_delete)
+            blocks = parse_blocks(place, session.dialect, block_delete=session.settings.block_delete)
         except GcodeError:
             level.spot = Spot(following, level.spot.line + 1)
             raise
-        if len(self._parsed) < _KEPT_LINES and (len(self.levels) > 1 or not block_is_plain(blocks)):
+        if len(self._parsed) < _KEPT_LINES and (len(session.levels) > 1 or not block_is_plain(blocks)):
             self._parsed[key] = (blocks, following)
         return blocks, following
 
-    @property
-    def line_offset(self) -> int:
-        """Offset of the line that is being run."""
-        return self._line_offset
-
-    def block_at(self, spot: Spot) -> ParsedBlock:
-        """The first block of the line at `spot`, parsed."""
-        text, _ = self.level.program.line_at(spot.offset)
-        place = Place(file=self.level.program.file, line=spot.line, text=text, calls=self.level.calls)
-        return parse_blocks(place, self.dialect)[0]
-
-    def count_jump(self, place: Place) -> None:
-        """Counts a jump back, so that a loop without an end is found before it has run for long.
-
-        Raises:
-            GcodeError: beyond `Limits.jumps`.
-        """
-        self._jumps += 1
-        if self._jumps > self.settings.limits.jumps:
-            self._run_away(place.line, f"more than {self.settings.limits.jumps} jumps back were made")
-
-    def _count_block(self, line: int, blocks: int = 1) -> None:
-        self._blocks += blocks
-        limit = self.settings.limits.blocks
-        if self._blocks > limit:
-            self._run_away(line, f"more than {limit} blocks were executed")
-
-    def _run_away(self, line: int, problem: str) -> NoReturn:
-        self.state = replace(self.state, ended=True)
-        place = Place(file=self.level.program.file, line=line, calls=self.level.calls)
-        raise GcodeError(place, "runaway", problem, "a program that ends, or a higher limit")
-
     def _end_of_text(self) -> Iterator[Event]:
         """The text is over: the end of a main program, or a subprogram without its return."""
-        level = self.level
-        if level.kind != "main":
-            jumps.end_of_subprogram(self, self.place)
+        session = self.session
+        if session.level.kind != "main":
+            subprograms.end_of_subprogram(session, session.place)
             return
-        yield Notice(place=self.place, code="no-program-end", text="the program ends without M2, M30 or %")
-        self.state, events = jumps.flushed(self.state)
+        yield Notice(place=session.place, code="no-program-end", text="the program ends without M2, M30 or %")
+        session.state, events = flushed(session.state)
         yield from events
-        self.state = replace(self.state, ended=True)
+        session.end()
 
     def _execute(self, block: ParsedBlock) -> Iterator[Event]:
         """Runs one block."""
-        level = self.level
+        session, level = self.session, self.session.level
+        if isinstance(block.statement, OWord):
+            yield from owords.execute(session, block, block.statement)
+            return
         if block.statement is not None:
-            yield from jumps.execute(self, block, block.statement)
+            yield from jumps.execute(session, block, block.statement)
             return
         if block.percent and level.kind != "main":
-            jumps.end_of_subprogram(self, block.place)
+            subprograms.end_of_subprogram(session, block.place)
             return
         first, level.fresh = level.fresh, False
-        words = jumps.evaluated(self, block)
-        if self.pending:
-            yield from self.pending
-            self.pending.clear()
+        words = evaluated(session, block)
+        if session.pending:
+            yield from session.pending
+            session.pending.clear()
         self._note(words)
-        call = jumps.macro_call(words)
+        call = subprograms.macro_call(words)
         if call is not None:
             words, macro = call
-        notice = jumps.skipped_data(self, words)
+        session.state, notice = skipped_data(session.state, words)
         if notice is not None:
             yield notice
             return
         moved = yield from self._step(words, first_of_program=first)
         if call is not None:
-            jumps.call_macro(self, block, macro)
-        elif moved and self.modal_macro is not None and not level.modal and level is self.level:
-            jumps.call_modal(self, block)
+            subprograms.call_macro(session, block, macro)
+        elif moved and session.modal_macro is not None and not level.modal and level is session.level:
+            subprograms.call_modal(session, block)
 
     def _note(self, block: ParsedBlock) -> None:
         """Keeps the number of the block, and obeys a comment that ends the program."""
+        session = self.session
         if block.words and block.words[0].letter == "N":
-            self.last_label = int(block.words[0].value)
+            session.last_label = int(block.words[0].value)
         for comment in block.comments:
-            if self.dialect.macro.named and comment.strip().lower().startswith("abort,"):
-                self.state = replace(self.state, ended=True)
+            if session.dialect.macro.named and comment.strip().lower().startswith("abort,"):
+                session.end()
                 raise block.error(None, "abort", f"the program aborts: {comment.strip()[6:]}")
 
     def _step(self, block: ParsedBlock, *, first_of_program: bool) -> Generator[Event, None, bool]:
         """Runs a block of words; True where it moved."""
+        session = self.session
         moved = False
-        self.state, events = step(self.state, block, first_of_program=first_of_program)
+        session.state, events = step(session.state, block, first_of_program=first_of_program)
         for event in events:
             if isinstance(event, CallRequest):
-                yield from jumps.call(self, block, event)
+                yield from subprograms.call(session, block, event)
             elif isinstance(event, StateRequest):
-                jumps.keep_state(self, block, event)
+                owords.keep_state(session, block, event)
             else:
                 moved = moved or isinstance(event, LinearMotion | ArcMotion)
                 yield event
@@ -258,8 +200,8 @@ class Runner:
 
     def _plain(self) -> PlainBatch | None:
         """A run of plain motion blocks from here on, taken at once; None where there is none."""
-        level, state = self.level, self.state
-        if level.queue or self.modal_macro is not None or not is_plain(state):
+        session, level, state = self.session, self.session.level, self.session.state
+        if level.queue or session.modal_macro is not None or not is_plain(state):
             return None
         feed = state.modes.feed
         start = PlainStart(
@@ -271,20 +213,21 @@ class Runner:
             feed_mm_min=feed,
             line=level.spot.line,
         )
-        most = min(MAX_LINES, self.settings.limits.blocks - self._blocks)
+        most = min(MAX_LINES, session.settings.limits.blocks - session.blocks)
         run = plain_run(level.program.text, level.spot.offset, start, max_lines=most)
         if run is None:
             return None
         line = level.spot.line
-        self._count_block(line, run.lines)
+        session.count_blocks(line, run.lines)
         level.spot = Spot(run.offset, line + run.lines)
         level.fresh = False
-        self.place = self._last_place(run)
+        session.place = _last_place(level, run)
         motion = "G0" if run.rapid_after else "G1"
-        self.state = replace(state, position_mm=run.position_mm, started=True)
+        session.state = replace(state, position_mm=run.position_mm, started=True)
         if motion != state.modes.motion or run.feed_after != feed:
-            self.state = self.state.with_modes(motion=motion, base_motion=motion, feed=run.feed_after)
-        self.last_label = self.last_label if run.label_after is None else run.label_after
+            session.state = session.state.with_modes(motion=motion, base_motion=motion, feed=run.feed_after)
+        if run.label_after is not None:
+            session.last_label = run.label_after
         return PlainBatch(
             start=start,
             run=run,
@@ -295,12 +238,12 @@ class Runner:
             extra=state.extra,
         )
 
-    def _last_place(self, run: PlainRun) -> Place:
-        """Place of the last line of a run that ends where the level stands."""
-        level = self.level
-        begin = max(level.program.text.rfind(b"\n", 0, run.offset - 1) + 1, run.begin)
-        text, _ = level.program.line_at(begin)
-        return Place(file=level.program.file, line=level.spot.line - 1, text=text, calls=level.calls)
+
+def _last_place(level: Level, run: PlainRun) -> Place:
+    """Place of the last line of a run that ends at the level's next line."""
+    begin = max(level.program.text.rfind(b"\n", 0, run.offset - 1) + 1, run.begin)
+    text, _ = level.program.line_at(begin)
+    return Place(file=level.program.file, line=level.spot.line - 1, text=text, calls=level.calls)
 
 
 def block_is_plain(blocks: tuple[ParsedBlock, ...]) -> bool:
@@ -313,7 +256,7 @@ def is_plain(state: State) -> bool:
     modes = state.modes
     return (
         modes.motion in ("G0", "G1")
-        and state.path is None
+        and state.waiting is None
         and state.frame.matrix is None
         and not modes.polar
         and not modes.diameter

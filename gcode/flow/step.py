@@ -9,13 +9,13 @@ from types import MappingProxyType
 from gcode.control.modal import Command, resolve
 from gcode.control.state import State
 from gcode.events import Block, Event, Notice, ProgramStop
-from gcode.flow.calls import CALL_ACTIONS
+from gcode.flow.requests import CALL_ACTIONS
 from gcode.language.blocks import ParsedBlock
+from gcode.phases.cutter_compensation import RADIUS_ACTIONS, through
 from gcode.phases.g10 import DATA_ACTIONS
 from gcode.phases.modes import ACTIONS, Action, not_negative, whole_number
 from gcode.phases.motion import MOTION_ACTIONS
 from gcode.phases.offsets import OFFSET_ACTIONS
-from gcode.phases.tool_path import RADIUS_ACTIONS, through
 from gcode.phases.transforms import TURNING_ACTIONS
 
 #: All phases of a block by name: what `Dialect.order` puts in order.
@@ -68,16 +68,16 @@ def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...
         raise command.block.error(word, "missing-axis", f"{word.text} names no axis", "at least one of X, Y, Z")
     first = Block(place=command.block.place)
     events: list[Event] = []
-    if state.path is None:
+    if state.waiting is None:
         events.append(first)
     else:
         state, ready = through(state, None, (first,))
         events.extend(ready)
-    if state.path is not None and state.path.compensates:
+    if state.compensates:
         _check_under_compensation(state, command)
     for phase in command.phases:
         state, more = PHASES[phase](state, command)
-        if phase == "radius" or (state.path is None and not _asks_corner(command)):
+        if phase == "radius" or (state.waiting is None and not _asks_corner(command)):
             events.extend(more)
         else:
             state, ready = through(state, command if phase == "motion" else None, more)

@@ -10,17 +10,15 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from gcode.control.frame import ORIGIN
+from gcode.control.coordinates import ORIGIN
 from gcode.control.state import State, WorkOffset
 from gcode.events import NO_EXTRA, Notice, ProgramStop
+from gcode.flow.session import Session
 from gcode.language.expressions import EvaluationError
 from gcode.phases.offsets import to_extra
 from gcode.settings import NUMBERED_OFFSETS, ToolOffset
-
-if TYPE_CHECKING:
-    from gcode.flow.runner import Runner
 
 _MESSAGE = re.compile(r"\(([^)]*)\)")
 _FEED_CODES = {"inverse-time": 93, "per-minute": 94, "per-revolution": 95}
@@ -79,17 +77,17 @@ _IGNORED = {3003: "single-block control", 3004: "feed control", 3005: "settings"
 
 
 class SystemVariables:
-    """The variables that belong to the control of a `Runner`."""
+    """The variables that belong to the control of a `Session`."""
 
-    def __init__(self, runner: Runner) -> None:
-        self._runner = runner
-        fanuc = runner.dialect.macro.vacant
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        fanuc = session.dialect.macro.vacant
         self._read: Callable[[int], float | None] = self._read_fanuc if fanuc else self._read_linuxcnc
         self._write: Callable[[int, float | None], None] = self._write_fanuc if fanuc else self._write_linuxcnc
 
     @property
     def _state(self) -> State:
-        return self._runner.state
+        return self._session.state
 
     def read(self, index: int) -> float | None:
         """Value of #index.
@@ -120,7 +118,7 @@ class SystemVariables:
         if 4101 <= index <= 4130 and index - 4000 in _LETTERS:
             return _LETTERS[index - 4000](state)
         if index == 4114:
-            return float(self._runner.last_label)
+            return float(self._session.last_label)
         position = self._fanuc_position(index)
         if position is not None:
             return position / unit
@@ -154,33 +152,33 @@ class SystemVariables:
             number = self._state.control.dialect.first_alarm + int(value or 0.0)
             raise EvaluationError("alarm", f"the program raises alarm {number}: {self._message()}")
         if index == 3006:
-            self._runner.pending.append(
-                ProgramStop(place=self._runner.place, optional=False, end=False, message=self._message())
+            self._session.pending.append(
+                ProgramStop(place=self._session.place, optional=False, end=False, message=self._message())
             )
             return
         if index in _IGNORED or index in _UNKNOWN_CLOCKS:
             meaning = _IGNORED.get(index) or _UNKNOWN_CLOCKS[index]
             text = f"#{index} ({meaning}) has no effect on the simulated motion"
-            self._runner.pending.append(Notice(place=self._runner.place, code="no-motion", text=text))
+            self._session.pending.append(Notice(place=self._session.place, code="no-motion", text=text))
             return
         if not self._write_offset(index, value or 0.0):
             raise EvaluationError("read-only-variable", f"#{index} cannot be set", "a variable that can be written")
 
     def _message(self) -> str:
-        found = _MESSAGE.search(self._runner.place.text)
+        found = _MESSAGE.search(self._session.place.text)
         return found[1].strip() if found else ""
 
     def _write_offset(self, index: int, value: float) -> bool:
         state, unit = self._state, self._state.modes.unit_mm
         place, column = _offset_place(state, index), _tool_column(state, index)
         if place is not None:
-            self._runner.state = _with_zero(state, place[0], place[1], value * unit)
+            self._session.state = _with_zero(state, place[0], place[1], value * unit)
             return True
         if column is not None:
             name, number = column
             row = state.setup.tools.get(number, ToolOffset()).with_column(name, value * unit)
             tools = MappingProxyType({**state.setup.tools, number: row})
-            self._runner.state = state.with_setup(tools=tools)
+            self._session.state = state.with_setup(tools=tools)
             return True
         return False
 
@@ -189,7 +187,7 @@ class SystemVariables:
     def _read_linuxcnc(self, index: int) -> float | None:
         state = self._state
         machine = state.control.machine_unit_mm
-        stored = self._runner.spare.get(index)
+        stored = self._session.stored.get(index)
         if stored is not None and (stored[1] is state.setup or index not in _OFFSET_PARAMETERS):
             return stored[0]
         for numbers, reader in self._linuxcnc:
@@ -240,9 +238,9 @@ class SystemVariables:
         for number, first in ((1, 5161), (2, 5181)):
             if first <= index < first + 3:
                 length = (value or 0.0) * self._state.control.machine_unit_mm
-                self._runner.state = _with_reference(self._state, number, index - first, length)
+                self._session.state = _with_reference(self._state, number, index - first, length)
                 return
-        self._runner.spare[index] = (value or 0.0, self._state.setup)
+        self._session.stored[index] = (value or 0.0, self._state.setup)
 
     def named(self, name: str) -> float | None:
         """Value of one of the control's named parameters, None where there is none of that name."""
@@ -258,8 +256,8 @@ class SystemVariables:
             state = self._state
             return _nine(state.gauge_mm, state.extra, state.modes.unit_mm)["xyzabcuvw".index(name[5])]
         if name == "_call_level":
-            return float(sum(level.kind == "routine" for level in self._runner.levels))
-        return float(self._runner.place.line) if name == "_line" else None
+            return float(sum(level.kind == "routine" for level in self._session.levels))
+        return float(self._session.place.line) if name == "_line" else None
 
 
 def _nine(point: tuple[float, float, float], extra: tuple[float, ...], unit: float) -> tuple[float, ...]:

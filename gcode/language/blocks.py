@@ -1,15 +1,19 @@
-"""What the parser hands on: one block of a program as words with their places, nothing interpreted yet."""
+"""One parsed block of a program: its words with their columns, its assignments, its statement of the macro language.
+
+Data only; nothing is interpreted yet. Statements come from two languages: FANUC's custom macro B (assignments, IF,
+WHILE, GOTO) and LinuxCNC's O-words.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from enum import Enum
+from typing import Any, NamedTuple, TypeAlias
 
+from gcode.dialects.macro_language import rounded
 from gcode.errors import GcodeError, Place
-from gcode.language.expressions import EvaluationError, Expression, Scope
-from gcode.language.functions import rounded
-from gcode.language.statements import Assignment, Statement
+from gcode.language.expressions import EvaluationError, Expression, Scope, Variable
 
 
 class Word(NamedTuple):
@@ -33,6 +37,101 @@ class Word(NamedTuple):
     def has_point(self) -> bool:
         """True where the number was written with a decimal point, or worked out."""
         return "." in self.text or "#" in self.text or "[" in self.text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Assignment:
+    """``#i = expression``."""
+
+    target: Variable
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Goto:
+    """``GOTO n``, or ``IF [condition] GOTO n``; ``condition`` None for the unconditional one."""
+
+    target: Expression
+    condition: Expression | None = None
+    column: int = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IfThen:
+    """``IF [condition] THEN statement``: an assignment, or a block of words."""
+
+    condition: Expression
+    then: ParsedBlock
+    column: int = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class While:
+    """``WHILE [condition] DO m``; ``DO m`` alone (``condition`` None) loops until something jumps out."""
+
+    label: int
+    condition: Expression | None = None
+    column: int = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class End:
+    """``END m``."""
+
+    label: int
+    column: int = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Output:
+    """``POPEN``, ``DPRNT[...]``, ``BPRNT[...]``, ``PCLOS``, ``SETVN``: understood, without any effect on motion."""
+
+    keyword: str
+    text: str
+    column: int = 1
+
+
+class OKeyword(Enum):
+    """What an O-word line says."""
+
+    SUB = "sub"
+    ENDSUB = "endsub"
+    CALL = "call"
+    RETURN = "return"
+    IF = "if"
+    ELSEIF = "elseif"
+    ELSE = "else"
+    ENDIF = "endif"
+    WHILE = "while"
+    ENDWHILE = "endwhile"
+    DO = "do"
+    BREAK = "break"
+    CONTINUE = "continue"
+    REPEAT = "repeat"
+    ENDREPEAT = "endrepeat"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OWord:
+    """``o<label> keyword [argument]...`` of LinuxCNC.
+
+    Attributes:
+        label: canonical label: the number as text (``100``) or the name in lower case; None where ``label_value``
+            computes it (``o#1 call``).
+        label_value: expression that gives a computed label.
+        keyword: what is said of it.
+        arguments: bracketed expressions behind the keyword: a condition, a count, arguments of a call, results.
+        column: column of the O, counted from 1.
+    """
+
+    label: str | None
+    keyword: OKeyword
+    label_value: Expression | None = None
+    arguments: tuple[Expression, ...] = ()
+    column: int = 1
+
+
+Statement: TypeAlias = Goto | IfThen | While | End | Output | OWord
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,21 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
-from gcode.language.functions import FANUC_MACRO, LINUXCNC_MACRO, NO_MACRO, MacroLanguage, MathError, rounded
-from gcode.language.statements import Variable
-
-__all__ = [
-    "FANUC_MACRO",
-    "LINUXCNC_MACRO",
-    "NO_MACRO",
-    "EvaluationError",
-    "Expression",
-    "MacroLanguage",
-    "Scope",
-    "Source",
-    "parse_operand",
-    "parse_variable",
-]
+from gcode.dialects.macro_language import MacroLanguage, MathError, rounded
 
 #: Brackets inside each other; no control takes a tenth of it.
 MAX_DEPTH = 60
@@ -95,6 +81,21 @@ class Expression:
         if value is not None and not math.isfinite(value):
             raise EvaluationError("bad-value", f"{self.text} is out of range", "a finite number", self.column)
         return value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variable:
+    """A variable as a target or operand: ``#101``, ``#[#1+2]`` (``index``), or ``#<name>`` (``name``).
+
+    Attributes:
+        index: the number, or what computes it; None for a named one.
+        name: name in lower case and without blanks, None for a numbered one. A leading underscore makes it global.
+        column: column of the ``#``, counted from 1.
+    """
+
+    index: Expression | None = None
+    name: str | None = None
+    column: int = 1
 
 
 @dataclass(frozen=True, slots=True)

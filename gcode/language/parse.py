@@ -6,9 +6,10 @@ import re
 from dataclasses import dataclass, field, replace
 
 from gcode.dialects import FANUC, Dialect
+from gcode.dialects.macro_language import MacroLanguage
 from gcode.errors import GcodeError, Place
 from gcode.language.blocks import ParsedBlock, Word
-from gcode.language.expressions import EvaluationError, MacroLanguage, Source, parse_operand
+from gcode.language.expressions import EvaluationError, Source, parse_operand
 from gcode.language.parse_statements import parse_assignment, parse_statement
 
 #: Longest line that is read, characters; controls stop at a few hundred.

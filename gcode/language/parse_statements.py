@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from gcode.language.blocks import ParsedBlock
+from gcode.language.blocks import Assignment, End, Goto, IfThen, OKeyword, Output, OWord, ParsedBlock, Statement, While
 from gcode.language.expressions import Expression, Source, parse_operand, parse_variable
-from gcode.language.statements import Assignment, End, Goto, IfThen, OKeyword, Output, OWord, Statement, While
 
 _OUTPUT = re.compile(r"POPEN|PCLOS|DPRNT|BPRNT|SETVN")
 _LOOP = re.compile(r"(DO|END)(\d+)")

@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from gcode.control.frame import SAME_PLACE_MM
+from gcode.control.coordinates import SAME_PLACE_MM
 from gcode.control.modal import Command
 from gcode.control.state import State
 from gcode.dialects import ArcTolerance

@@ -41,7 +41,7 @@ def drill(state: State, command: Command) -> Result:
     if state.machine.feed_mode == "inverse-time":
         problem = f"{state.modes.motion} with inverse time feed"
         raise command.block.error(None, "cycle-feed", problem, "G94 or G95")
-    if state.path is not None and state.path.compensates:
+    if state.compensates:
         problem = f"{state.modes.motion} while cutter compensation is on"
         raise command.block.error(None, "compensation-cycle", problem, "G40 before it")
     if not state.frame.keeps_lengths:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 from gcode.compensation.planar import (
     SAME_POINT_MM,
@@ -18,10 +18,10 @@ from gcode.compensation.planar import (
     swept,
     unit,
 )
+from gcode.control.waiting import CornerKind
 from gcode.errors import GcodeError
 from gcode.events import LinearMotion, Motion
 
-CornerKind: TypeAlias = Literal["chamfer", "round"]
 Ends: TypeAlias = tuple[complex, complex]
 
 #: Two directions that differ by no more than this have no corner: the motion inserted has no length.

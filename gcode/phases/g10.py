@@ -6,14 +6,17 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from gcode.control.frame import ORIGIN, Frame, difference, plus
+from gcode.control.coordinates import ORIGIN, Frame, difference, plus
 from gcode.control.modal import Command
 from gcode.control.state import EXTRA_AXES, State, WorkOffset
 from gcode.events import NO_EXTRA, Event, Notice, Point
+from gcode.language.blocks import ParsedBlock
 from gcode.phases.modes import Action, Result, whole_number
 from gcode.phases.offsets import additional_offset, axis_words, extra_value, extra_words, to_extra
 from gcode.settings import NUMBERED_OFFSETS, ToolOffset
 
+#: Kind of data (`Dialect.data_kinds`) that lasts from G10 L until G11, block after block, and is not executed.
+_UNTIL_G11 = "ignored"
 #: Orientations of lathe tools are numbered from 1 to this.
 LAST_ORIENTATION = 9
 
@@ -225,5 +228,27 @@ _TAKES: Mapping[str, str] = {
     "tool-here": "XYZR",
     "tool-at-fixture": "XYZR",
 }
+
+
+def skipped_data(state: State, block: ParsedBlock) -> tuple[State, Notice | None]:
+    """Skips a block of data entry (tool life, parameters) between G10 L and G11.
+
+    Returns:
+        The state, and a notice where the block is such data and must not be executed.
+    """
+    codes = {word.value for word in block.words if word.letter == "G"}
+    kind = next((word for word in block.words if word.letter == "L"), None)
+    if not state.modes.entering_data:
+        kinds = state.control.dialect.data_kinds
+        if kind is None or 10.0 not in codes or kinds.get(int(kind.value)) != _UNTIL_G11:
+            return state, None
+        state = state.with_modes(entering_data=True)
+    elif 11.0 in codes or block.percent:
+        return state.with_modes(entering_data=False), None
+    if not block.words:
+        return state, None
+    text = f"data entry is not executed: {block.place.text.strip()}"
+    return state, Notice(place=block.place, code="data-entry", text=text)
+
 
 DATA_ACTIONS: Mapping[str, Action] = {"data": set_data}

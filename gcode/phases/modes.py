@@ -90,7 +90,7 @@ def _with_motion(state: State, code: str) -> State:
 
 
 def _with_plane(state: State, command: Command, word: Word, plane: int) -> State:
-    if plane != state.machine.plane and state.path is not None and state.path.compensates:
+    if plane != state.machine.plane and state.compensates:
         problem = f"{word.text} while cutter compensation is on"
         raise command.block.error(word, "compensation-plane", problem, "G40 before another plane")
     return state.with_machine(plane=plane)

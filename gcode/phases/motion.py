@@ -56,7 +56,7 @@ def _machine_move(state: State, command: Command) -> Result:
         raise command.block.error(word, "g53-incremental", "G53 while G91 is active", "G90")
     if not dialect.machine_moves_rapid and modes.motion not in ("G0", "G1"):
         raise command.block.error(word, "g53-motion", f"G53 while {modes.motion} is active", "G0 or G1")
-    if state.path is not None and state.path.compensates:
+    if state.compensates:
         raise command.block.error(word, "g53-compensation", "G53 while cutter compensation is on", "G40 before it")
     rapid = dialect.machine_moves_rapid or modes.motion == "G0"
     end = state.tip_of(_replaced(state.gauge_mm, command, modes.unit_mm))

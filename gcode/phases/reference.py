@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from gcode.control.frame import ORIGIN, SAME_PLACE_MM
+from gcode.control.coordinates import ORIGIN, SAME_PLACE_MM
 from gcode.control.modal import Command
 from gcode.control.state import AXES, EXTRA_AXES, State
 from gcode.events import NO_EXTRA, Extra, Point
@@ -19,7 +19,7 @@ from gcode.phases.targets import extra_end, programmed_end, settled
 def return_to_reference(state: State, command: Command) -> Result:
     """The one of this family that the block holds."""
     use = command.of_phase("reference")[0]
-    if state.path is not None and state.path.compensates:
+    if state.compensates:
         problem = f"{use.word.text} while cutter compensation is on"
         raise command.block.error(use.word, "compensation-reference", problem, "G40 before it")
     return _ACTIONS[use.rule.code](state, command)

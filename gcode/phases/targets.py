@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from gcode.control.frame import SAME_PLACE_MM
+from gcode.control.coordinates import SAME_PLACE_MM
 from gcode.control.modal import Command
 from gcode.control.state import AXES, EXTRA_AXES, State
 from gcode.events import PLANE_AXES, Extra, Point

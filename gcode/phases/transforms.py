@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from gcode.control.frame import Turning, rotation, scaling
+from gcode.control.coordinates import Turning, rotation, scaling
 from gcode.control.modal import Command, Use
 from gcode.control.state import AXES, TURNING_ORDER, State
 from gcode.events import PLANE_AXES, Point

@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcode.bulk.arrays import Kind, MotionArrays, concatenate, motion_arrays
 from gcode.dialects import dialect_named
 from gcode.errors import GcodeError
 from gcode.events import NO_EXTRA, ArcMotion, Dwell, Event, LinearMotion
 from gcode.flow.interpret import interpret
+from gcode.report.motion_arrays import Kind, MotionArrays, concatenate, motion_arrays
 from gcode.report.motion_json import type_of
 from gcode.settings import MachineSettings
 

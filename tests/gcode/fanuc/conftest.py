@@ -27,7 +27,7 @@ def value() -> Callable[..., float | None]:
         runner = Runner(program_of(text, "t.nc"), dialect_named(dialect), MachineSettings(**settings), _raise)
         for _ in runner.run():
             pass
-        return runner.variables.number(index)
+        return runner.session.variables.number(index)
 
     return value_of
 

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gcode.bulk.arrays import Kind, MotionArrays, motion_arrays
 from gcode.dialects import FANUC, Dialect
 from gcode.errors import GcodeError, Place
 from gcode.events import MotionState
 from gcode.flow.interpret import Text
+from gcode.report.motion_arrays import Kind, MotionArrays, motion_arrays
 from gcode.settings import MachineSettings
 from twin.arrays import FloatArray, frozen
 from twin.cam.path.toolpath import arc_sweep_rad

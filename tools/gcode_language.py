@@ -14,19 +14,12 @@ from gcode.compensation.fanuc import BLOCKS_READ_OVER
 from gcode.control import variables
 from gcode.cycles.hole import MOST_STEPS
 from gcode.dialects import ArcTolerance, DwellWord
+from gcode.dialects.macro_language import FANUC_MACRO, LINUXCNC_MACRO, MacroLanguage
 from gcode.flow import leader, owords
 from gcode.flow.system_variables import _CONSTANTS as CONSTANTS
 from gcode.flow.system_variables import _NAMED as NAMED
 from gcode.language import parse, program
-from gcode.language.expressions import (
-    FANUC_MACRO,
-    LINUXCNC_MACRO,
-    MAX_DEPTH,
-    EvaluationError,
-    MacroLanguage,
-    Source,
-    parse_operand,
-)
+from gcode.language.expressions import MAX_DEPTH, EvaluationError, Source, parse_operand
 from gcode.phases import splines
 from gcode.settings import ADDITIONAL_OFFSETS, Limits, MachineSettings, ToolOffset
 from gcode.tables.text_file import LARGEST_BYTES

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from gcode.dialects import Dialect
 from gcode.events import Notice
-from gcode.flow.runner import Runner
+from gcode.flow.session import Session
+from gcode.flow.system_variables import SystemVariables
 from gcode.language.expressions import EvaluationError
 from gcode.language.program import program_of
 from gcode.settings import MachineSettings
@@ -111,40 +112,36 @@ LINUXCNC_ROWS = (
 
 def access_of(dialect: Dialect, numbers: Iterable[int]) -> dict[int, Access]:
     """What becomes of each variable."""
-    runner = Runner(program_of("", "variables"), dialect, MachineSettings(), _ignore)
-    start = runner.state
+    session = Session(program_of("", "variables"), dialect, MachineSettings(), SystemVariables)
+    start = session.state
     found: dict[int, Access] = {}
     for number in numbers:
-        read = _read(runner, number)
-        found[number] = Access(read, _write(runner, number))
-        runner.state = start
-        runner.pending.clear()
+        read = _read(session, number)
+        found[number] = Access(read, _write(session, number))
+        session.state = start
+        session.pending.clear()
     return found
 
 
-def _ignore(_error: Exception) -> None:
-    """Nothing is run, so nothing is refused."""
-
-
-def _read(runner: Runner, number: int) -> str:
+def _read(session: Session, number: int) -> str:
     try:
-        runner.variables.number(number)
+        session.variables.number(number)
     except EvaluationError:
         return "refused"
     return "yes"
 
 
-def _write(runner: Runner, number: int) -> str:
-    before = runner.state
+def _write(session: Session, number: int) -> str:
+    before = session.state
     try:
-        runner.variables.set_number(number, 1.0)
+        session.variables.set_number(number, 1.0)
     except EvaluationError as error:
         return "raises it" if error.code == "alarm" else "refused"
-    if runner.pending:
-        return "no motion" if isinstance(runner.pending[0], Notice) else "stops"
-    if runner.state is not before:
+    if session.pending:
+        return "no motion" if isinstance(session.pending[0], Notice) else "stops"
+    if session.state is not before:
         return "takes effect"
-    return "stored only" if number in runner.spare else "yes"
+    return "stored only" if number in session.stored else "yes"
 
 
 def rows_of(dialect: Dialect) -> tuple[Row, ...]:

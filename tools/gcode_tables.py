@@ -1,7 +1,7 @@
-"""The tables of gcode.md, made from the tables that the interpreter runs on.
+"""The tables of docs/gcode.md, made from the tables that the interpreter runs on.
 
-python docs/gcode_tables.py            # rewrites the parts of gcode.md between the markers
-python docs/gcode_tables.py --check    # says whether the page is out of date: exit code 1
+python tools/gcode_tables.py            # rewrites the parts of docs/gcode.md between the markers
+python tools/gcode_tables.py --check    # says whether the page is out of date: exit code 1
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from gcode.dialects.codes import CodeRule, Status
 from gcode.language.foreign import RULES
 from gcode.phases.g10 import _TAKES as DATA_WORDS
 
-PAGE = Path(__file__).with_name("gcode.md")
+PAGE = Path(__file__).parents[1] / "docs/gcode.md"
 _PART = re.compile(r"(<!-- generated: ([a-z-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _NAMES = tuple(DIALECTS)
 #: What a code's status is called on the page.
@@ -243,7 +243,7 @@ def main(arguments: Iterable[str] | None = None) -> int:
     page = PAGE.read_text(encoding="utf-8")
     new = updated(page)
     if options.check and new != page:
-        print(f"{PAGE.name} is out of date; python docs/gcode_tables.py rewrites it", file=sys.stderr)
+        print(f"{PAGE.name} is out of date; python tools/gcode_tables.py rewrites it", file=sys.stderr)
         return 1
     if not options.check:
         PAGE.write_text(new, encoding="utf-8")

@@ -1,21 +1,22 @@
 """What stands between the programmed path and the tool's: cutter compensation, and corners cut or rounded.
 
-Both need the next motion before the present one is known, so motions wait in a `Path` as part of the state.
+Both need the next motion before the present one is known, so motions wait in a `WaitingPath` as part of the state.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from gcode import compensation
-from gcode.control.frame import difference, plus
+import gcode.compensation as compensation
+from gcode.control.coordinates import difference, plus
 from gcode.control.modal import Command
 from gcode.control.state import State, same_place
-from gcode.errors import GcodeError
+from gcode.control.waiting import CornerKind, WaitingCorner, WaitingPath
+from gcode.errors import GcodeError, Place
 from gcode.events import PLANE_AXES, ArcMotion, Event, LinearMotion, Motion, Notice, Point, ProgramStop
 from gcode.language.blocks import Word
-from gcode.phases.corners import CornerKind, insert_corner
+from gcode.phases.corners import insert_corner
 from gcode.phases.modes import Action, Result, whole_number
 from gcode.settings import ToolOffset
 
@@ -26,45 +27,6 @@ ROUND_ORIENTATIONS = frozenset({0, 9})
 _CORNERS: Mapping[str, CornerKind] = {",C": "chamfer", ",R": "round"}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Corner:
-    """A motion that ends in a corner to be cut or rounded, and what was said since.
-
-    Attributes:
-        motion: the motion before the corner.
-        kind: ``chamfer`` or ``round``.
-        size_mm: length of ,C or radius of ,R.
-        waiting: events after the motion.
-    """
-
-    motion: Motion
-    kind: CornerKind
-    size_mm: float
-    waiting: tuple[Event, ...] = ()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Path:
-    """What waits for the next motion.
-
-    Attributes:
-        compensation: cutter compensation that is on, None for none.
-        cancelling: the next motion turns it off.
-        at_mm: where the tool stands after G40 alone, beside the programmed path; None where it is on it.
-        corner: a corner whose second motion is still to come, None for none.
-    """
-
-    compensation: compensation.Compensation | None = None
-    cancelling: bool = False
-    at_mm: Point | None = None
-    corner: Corner | None = None
-
-    @property
-    def compensates(self) -> bool:
-        """True while cutter compensation is on."""
-        return self.compensation is not None
-
-
 def set_radius(state: State, command: Command) -> Result:
     """G40, G41, G42 and D: whether and how the tool's path is offset from the programmed one."""
     uses = command.of_phase("radius")
@@ -72,7 +34,7 @@ def set_radius(state: State, command: Command) -> Result:
     state, notices = _with_number(state, command, code)
     if code == "G40":
         return _off(state, command)
-    if code is None and (state.path is None or not state.path.compensates):
+    if code is None and not state.compensates:
         return state, notices
     side = _SIDES[code] if code else _present_side(state)
     state = _on(state, command, side, _radius(state, command, code), uses[0].word if uses else command.words["D"])
@@ -128,7 +90,7 @@ def _row(state: State, command: Command, number: int, word: Word | None) -> Tool
 
 
 def _on(state: State, command: Command, side: compensation.Hand, radius_mm: float, word: Word) -> State:
-    path, place = state.path or Path(), command.block.place_of(word)
+    path, place = state.waiting or WaitingPath(), command.block.place_of(word)
     settings, dialect = state.control.settings, state.control.dialect
     plane = state.machine.plane
     seen = _OTHER[side] if (state.frame.plane_scale(plane) or 1.0) < 0.0 else side
@@ -142,7 +104,7 @@ def _on(state: State, command: Command, side: compensation.Hand, radius_mm: floa
         at = path.at_mm or state.position_mm
         changed = compensation.begin(style, seen, radius_mm, plane, at, place=place, unit_mm=state.modes.unit_mm)
     state = state.with_machine(compensation=side, radius_number=state.modes.radius_number)
-    return replace(state, path=replace(path, compensation=changed, cancelling=False, at_mm=None))
+    return replace(state, waiting=replace(path, compensation=changed, cancelling=False, at_mm=None))
 
 
 def _moves_in_plane(state: State, command: Command) -> bool:
@@ -153,19 +115,19 @@ def _moves_in_plane(state: State, command: Command) -> bool:
 def _off(state: State, command: Command) -> Result:
     """G40: with a motion in the block this motion leaves the offset, else the next one does."""
     state = state.with_machine(compensation="off", radius_number=None)
-    path = state.path
+    path = state.waiting
     if path is None or path.compensation is None:
         return state, ()
     if "motion" in command.phases:
-        return replace(state, path=replace(path, cancelling=True)), ()
+        return replace(state, waiting=replace(path, cancelling=True)), ()
     events, at = compensation.end(path.compensation)
     beside = None if same_place(at, state.position_mm) else at
-    return _with_path(state, replace(path, compensation=None, cancelling=False, at_mm=beside)), events
+    return _with_waiting(state, replace(path, compensation=None, cancelling=False, at_mm=beside)), events
 
 
-def _with_path(state: State, path: Path) -> State:
+def _with_waiting(state: State, path: WaitingPath) -> State:
     """The state with what waits; None again where nothing does."""
-    return replace(state, path=None if path == Path() else path)
+    return replace(state, waiting=None if path == WaitingPath() else path)
 
 
 def through(state: State, command: Command | None, events: Iterable[Event]) -> Result:
@@ -182,7 +144,7 @@ def through(state: State, command: Command | None, events: Iterable[Event]) -> R
     out: list[Event] = []
     corner = _asked_corner(state, command)
     for event in events:
-        path = state.path or Path()
+        path = state.waiting or WaitingPath()
         if path.corner is not None:
             state, ready = _past_corner(state, path, path.corner, event)
         else:
@@ -194,6 +156,15 @@ def through(state: State, command: Command | None, events: Iterable[Event]) -> R
                 state, more = _compensated(state, one)
                 out.extend(more)
     return state, tuple(out)
+
+
+def flushed(state: State) -> Result:
+    """The waiting motions at the end of a program that has no M2, M30 or percent sign."""
+    if state.waiting is None:
+        return state, ()
+    end = ProgramStop(place=Place(file="", line=1), optional=False, end=True)
+    state, events = through(state, None, (end,))
+    return state, events[:-1]
 
 
 def _asked_corner(state: State, command: Command | None) -> tuple[CornerKind, float] | None:
@@ -213,43 +184,45 @@ def _asked_corner(state: State, command: Command | None) -> tuple[CornerKind, fl
 
 
 def _hold(state: State, motion: Motion, kind: CornerKind, size_mm: float) -> State:
-    corner = Corner(motion=motion, kind=kind, size_mm=size_mm)
-    return replace(state, path=replace(state.path or Path(), corner=corner))
+    corner = WaitingCorner(motion=motion, kind=kind, size_mm=size_mm)
+    return replace(state, waiting=replace(state.waiting or WaitingPath(), corner=corner))
 
 
-def _past_corner(state: State, path: Path, corner: Corner, event: Event) -> tuple[State, tuple[Event, ...]]:
+def _past_corner(
+    state: State, path: WaitingPath, corner: WaitingCorner, event: Event
+) -> tuple[State, tuple[Event, ...]]:
     """What a corner that waits gives once the next event is there."""
     if isinstance(event, ProgramStop) and event.end:
         problem = "a corner at the end of the program"
         raise _corner_error(corner, problem)
     if not isinstance(event, LinearMotion | ArcMotion):
-        return replace(state, path=replace(path, corner=replace(corner, waiting=(*corner.waiting, event)))), ()
+        return replace(state, waiting=replace(path, corner=replace(corner, events=(*corner.events, event)))), ()
     first, between, second = insert_corner(corner.motion, event, corner.kind, corner.size_mm)
-    return _with_path(state, replace(path, corner=None)), (first, between, *corner.waiting, second)
+    return _with_waiting(state, replace(path, corner=None)), (first, between, *corner.events, second)
 
 
-def _corner_error(corner: Corner, problem: str) -> Exception:
+def _corner_error(corner: WaitingCorner, problem: str) -> Exception:
     return GcodeError(corner.motion.place, "corner-no-motion", problem, "a feed motion in the plane after it")
 
 
 def _compensated(state: State, event: Event) -> tuple[State, tuple[Event, ...]]:
-    path = state.path
+    path = state.waiting
     if path is None or (path.compensation is None and path.at_mm is None):
         return state, (event,)
     if path.compensation is None:
         return _from_beside(state, path, event)
     if isinstance(event, ProgramStop) and event.end:
         events, _ = compensation.end(path.compensation)
-        return _with_path(state, replace(path, compensation=None, cancelling=False)), (*events, event)
+        return _with_waiting(state, replace(path, compensation=None, cancelling=False)), (*events, event)
     if not isinstance(event, LinearMotion | ArcMotion):
-        return replace(state, path=replace(path, compensation=compensation.queue(path.compensation, event))), ()
+        return replace(state, waiting=replace(path, compensation=compensation.queue(path.compensation, event))), ()
     if path.cancelling:
         events = compensation.cancel(path.compensation, event)
         at = _last_end(events, event.end_mm)
         beside = None if same_place(at, event.end_mm) else at
-        return _with_path(state, replace(path, compensation=None, cancelling=False, at_mm=beside)), events
+        return _with_waiting(state, replace(path, compensation=None, cancelling=False, at_mm=beside)), events
     changed, events = compensation.move(path.compensation, event)
-    return replace(state, path=replace(path, compensation=changed)), events
+    return replace(state, waiting=replace(path, compensation=changed)), events
 
 
 def _last_end(events: tuple[Event, ...], otherwise: Point) -> Point:
@@ -257,7 +230,7 @@ def _last_end(events: tuple[Event, ...], otherwise: Point) -> Point:
     return ends[-1] if ends else otherwise
 
 
-def _from_beside(state: State, path: Path, event: Event) -> tuple[State, tuple[Event, ...]]:
+def _from_beside(state: State, path: WaitingPath, event: Event) -> tuple[State, tuple[Event, ...]]:
     """The motion after G40 alone starts beside the programmed path and ends on it."""
     at = path.at_mm
     if at is None or not isinstance(event, LinearMotion | ArcMotion):
@@ -268,8 +241,8 @@ def _from_beside(state: State, path: Path, event: Event) -> tuple[State, tuple[E
     if state.control.dialect.compensation == "fanuc" and _along_normal(event):
         end = plus(event.end_mm, offset)
         moved = replace(event, start_mm=at, end_mm=end)
-        return replace(state, path=replace(path, at_mm=end)), (moved,)
-    return _with_path(state, replace(path, at_mm=None)), (replace(event, start_mm=at),)
+        return replace(state, waiting=replace(path, at_mm=end)), (moved,)
+    return _with_waiting(state, replace(path, at_mm=None)), (replace(event, start_mm=at),)
 
 
 def _along_normal(event: LinearMotion) -> bool:

@@ -1,0 +1,175 @@
+"""The memory of a running program: what the functions of this folder read and change, block after block."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import NoReturn
+
+from gcode.control.state import Setup, State, initial_state
+from gcode.control.variables import ControlVariables, Variables
+from gcode.dialects import Dialect
+from gcode.errors import Call, GcodeError, Place
+from gcode.events import Event
+from gcode.flow.call_stack import Level
+from gcode.flow.library import Library
+from gcode.language.blocks import ParsedBlock
+from gcode.language.parse import parse_blocks
+from gcode.language.program import Program, Spot
+from gcode.settings import MachineSettings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModalMacro:
+    """The macro that G66 calls after every motion."""
+
+    program: Program
+    spot: Spot
+    name: str
+    arguments: Mapping[int, float]
+    count: int
+
+
+class Session:
+    """One run of one program: the control, the call stack, the variables, and the counts that end a runaway program.
+
+    Args:
+        program: the main program.
+        dialect: the control whose language it is in.
+        settings: the machine at the program's start.
+        control_variables: makes the access to the control's own variables, which read and change this session.
+
+    Attributes:
+        state: modes, offsets and position of the control.
+        levels: the call stack, the main program first.
+        variables: of the macro language.
+        stored: values of LinuxCNC's parameters that have no effect here, each with the offsets when it was written.
+        library: where subprograms are found.
+        pending: events of an assignment that are still to be given out.
+        modal_macro: the macro of G66 that is active, None for none.
+        last_label: number of the last N word.
+        place: of the line that is being run.
+        line_offset: byte offset of that line.
+        blocks: blocks executed so far.
+        jumps: jumps back made so far.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        dialect: Dialect,
+        settings: MachineSettings,
+        control_variables: Callable[[Session], ControlVariables],
+    ) -> None:
+        self.dialect = dialect
+        self.settings = settings
+        self.state: State = initial_state(dialect, settings)
+        self.levels = [Level(program=program, spot=Spot(0, 1))]
+        self.variables = Variables(
+            dialect.macro, control=control_variables(self), initial=settings.variables, steps=self.steps_of
+        )
+        self.stored: dict[int, tuple[float, Setup]] = {}
+        self.library = Library(settings.search_path)
+        self.pending: list[Event] = []
+        self.modal_macro: ModalMacro | None = None
+        self.last_label = 0
+        self.place = Place(file=program.file, line=1)
+        self.line_offset = 0
+        self.blocks = 0
+        self.jumps = 0
+
+    @property
+    def level(self) -> Level:
+        """The innermost level."""
+        return self.levels[-1]
+
+    @property
+    def spot(self) -> Spot:
+        """The line that is being run."""
+        return Spot(self.line_offset, self.level.spot.line - 1)
+
+    def spot_after(self, spot: Spot) -> Spot:
+        """The line after the one at `spot`."""
+        _, following = self.level.program.line_at(spot.offset)
+        return Spot(following, spot.line + 1)
+
+    def block_at(self, spot: Spot) -> ParsedBlock:
+        """The first block of the line at `spot`, parsed."""
+        text, _ = self.level.program.line_at(spot.offset)
+        place = Place(file=self.level.program.file, line=spot.line, text=text, calls=self.level.calls)
+        return parse_blocks(place, self.dialect)[0]
+
+    def steps_of(self, letter: str) -> int:
+        """Steps per unit to which a computed number of an address is rounded, 0 for no rounding.
+
+        Lengths have 1000 least input increments in a millimetre and 10,000 in an inch.
+        """
+        if letter in self.dialect.increment_letters:
+            return 1000 if self.state.modes.unit_mm == 1.0 else 10_000
+        return int(letter in self.dialect.whole_letters)
+
+    def start(self) -> None:
+        """Marks the program as begun, so that a percent sign from here on ends it."""
+        if not self.state.started:
+            self.state = replace(self.state, started=True)
+
+    def end(self) -> None:
+        """Ends the program."""
+        self.state = replace(self.state, ended=True)
+
+    def enter(self, block: ParsedBlock, level: Level) -> None:
+        """Puts a level on the call stack.
+
+        Raises:
+            GcodeError: where calls are nested too deep.
+        """
+        limit = self.settings.limits.nesting
+        if len(self.levels) > limit:
+            self.end()
+            raise block.error(None, "nesting", f"calls nested more than {limit} deep", "fewer levels")
+        here = block.place
+        level.calls = (*here.calls, Call(program=level.name, file=here.file, line=here.line))
+        if level.owns_variables:
+            self.variables.push(level.arguments)
+        self.levels.append(level)
+        self.start()
+
+    def leave(self, *, repeat: bool = True) -> None:
+        """Ends the innermost level, or starts it again where it is to be repeated."""
+        level = self.level
+        if repeat and level.repeats > 0:
+            level.begin_again()
+            if level.owns_variables:
+                self.variables.pop()
+                self.variables.push(level.arguments)
+            return
+        self.levels.pop()
+        if level.owns_variables:
+            self.variables.pop()
+        if level.saved is not None and level.saved.until_return:
+            self.state = level.saved.restored_in(self.state)
+
+    def count_blocks(self, line: int, blocks: int = 1) -> None:
+        """Counts blocks that are about to be executed.
+
+        Raises:
+            GcodeError: beyond `Limits.blocks`.
+        """
+        self.blocks += blocks
+        if self.blocks > self.settings.limits.blocks:
+            self._run_away(line, f"more than {self.settings.limits.blocks} blocks were executed")
+
+    def count_jump(self, place: Place) -> None:
+        """Counts a jump back, so that an endless loop is found before it has run for long.
+
+        Raises:
+            GcodeError: beyond `Limits.jumps`.
+        """
+        self.jumps += 1
+        if self.jumps > self.settings.limits.jumps:
+            self._run_away(place.line, f"more than {self.settings.limits.jumps} jumps back were made")
+
+    def _run_away(self, line: int, problem: str) -> NoReturn:
+        self.end()
+        place = Place(file=self.level.program.file, line=line, calls=self.level.calls)
+        raise GcodeError(place, "runaway", problem, "a program that ends, or a higher limit")
