@@ -6,21 +6,18 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.job import load_job
-from twin.record import RunSummary, Step
-from twin.simulation.replay import Replay
+import twin
 
 JOB = Path(__file__).parent / "ball_slot" / "job.toml"
 
 
 def main() -> None:
     deepest = 0.0
-    with Replay(load_job(JOB)) as run:
-        for record in run:
-            if isinstance(record, Step) and record.engagement.cutting:
-                deepest = max(deepest, record.engagement.axial_depth_mm)
-            elif isinstance(record, RunSummary):
-                summary = record
+    for record in twin.records(JOB):
+        if isinstance(record, twin.Step) and record.engagement.cutting:
+            deepest = max(deepest, record.engagement.axial_depth_mm)
+        elif isinstance(record, twin.RunSummary):
+            summary = record
     fx, fy, fz, resultant = np.round(summary.mean_force_n, 2)
     print(f"{summary.removed_volume_mm3:.1f} mm3 in {summary.cutting_time_s:.1f} s of cutting, {deepest:.2f} mm deep")
     print(f"mean force on the tool: x {fx} N, y {fy} N, z {fz} N, resultant {resultant} N")

@@ -1,8 +1,119 @@
-"""A machining digital twin: replays NC programs, removes material, predicts cutting forces."""
+"""A machining digital twin: replays NC programs, removes material, predicts cutting forces.
 
-from importlib.metadata import PackageNotFoundError, version
+    import twin
 
-try:
-    __version__ = version("machining-twin")
-except PackageNotFoundError:  # run from a checkout that is not installed
-    __version__ = "0.0.0+checkout"
+    run = twin.replay("examples/ball_slot/job.toml")
+    print(run.summary.peak_force_n, run.forces["fx_n"].max())
+
+The names below are the public interface; every other module is private and may change. Importing the package loads
+nothing else: a name is loaded when it is used for the first time.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from twin.api import open_run, records, replay
+    from twin.errors import (
+        ArchiveError,
+        CollisionError,
+        CompareError,
+        IdentifyError,
+        JobError,
+        MeasuredError,
+        MeshError,
+        ReplayError,
+        StockError,
+        ToolError,
+        ToolPathError,
+        TwinError,
+    )
+    from twin.job import Job, job_from_dict, load_job
+    from twin.record import (
+        Attachment,
+        Collision,
+        Engagement,
+        ForceSamples,
+        NcEvent,
+        Record,
+        RunHeader,
+        RunSummary,
+        Step,
+        ToolRecord,
+        ToolSummary,
+        WorkpiecePatch,
+    )
+    from twin.run.run import Run
+    from twin.version import __version__
+    from twin.workpiece.mesh_file import write_mesh
+    from twin.workpiece.to_mesh import SurfaceMesh
+
+__all__ = [
+    "ArchiveError",
+    "Attachment",
+    "Collision",
+    "CollisionError",
+    "CompareError",
+    "Engagement",
+    "ForceSamples",
+    "IdentifyError",
+    "Job",
+    "JobError",
+    "MeasuredError",
+    "MeshError",
+    "NcEvent",
+    "Record",
+    "ReplayError",
+    "Run",
+    "RunHeader",
+    "RunSummary",
+    "Step",
+    "StockError",
+    "SurfaceMesh",
+    "ToolError",
+    "ToolPathError",
+    "ToolRecord",
+    "ToolSummary",
+    "TwinError",
+    "WorkpiecePatch",
+    "__version__",
+    "job_from_dict",
+    "load_job",
+    "open_run",
+    "records",
+    "replay",
+    "write_mesh",
+]
+
+#: Modules of the public names.
+_HOMES = {
+    "twin.api": ("open_run", "records", "replay"),
+    "twin.errors": (
+        *("ArchiveError", "CollisionError", "CompareError", "IdentifyError", "JobError", "MeasuredError"),
+        *("MeshError", "ReplayError", "StockError", "ToolError", "ToolPathError", "TwinError"),
+    ),
+    "twin.job": ("Job", "job_from_dict", "load_job"),
+    "twin.record": (
+        *("Attachment", "Collision", "Engagement", "ForceSamples", "NcEvent", "Record", "RunHeader", "RunSummary"),
+        *("Step", "ToolRecord", "ToolSummary", "WorkpiecePatch"),
+    ),
+    "twin.run.run": ("Run",),
+    "twin.version": ("__version__",),
+    "twin.workpiece.mesh_file": ("write_mesh",),
+    "twin.workpiece.to_mesh": ("SurfaceMesh",),
+}
+_HOME = {name: module for module, names in _HOMES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'twin' has no attribute {name!r}")
+    value = getattr(import_module(_HOME[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -16,7 +16,7 @@ from support.job_files import NOTHING, job_folder
 from gcode.errors import GcodeError, Place
 from twin.archive import read_run, run_info
 from twin.cli import run
-from twin.cli.stop import StopWish
+from twin.cli.stop import StopRequest
 from twin.errors import ArchiveError, ReplayError
 from twin.record import Collision, Record, RunSummary, Step
 from twin.sinks.rerun.sink import RerunSink
@@ -30,7 +30,7 @@ def use(monkeypatch: pytest.MonkeyPatch) -> Use:
 
     def install(**options: object) -> FakeReplay:
         fake = FakeReplay(**options)  # type: ignore[arg-type]
-        monkeypatch.setattr("twin.cli.commands.replaying.open_run", fake.open)
+        monkeypatch.setattr("twin.cli.commands.replaying.open_replay", fake.open)
         return fake
 
     return install
@@ -261,8 +261,8 @@ def test_signals_are_left_alone_outside_the_main_thread() -> None:
     seen: list[object] = []
 
     def inside() -> None:
-        with StopWish() as wish:
-            seen.extend([signal.getsignal(signal.SIGINT), wish.signal_number])
+        with StopRequest() as stop:
+            seen.extend([signal.getsignal(signal.SIGINT), stop.signal_number])
 
     thread = threading.Thread(target=inside)
     thread.start()

@@ -55,6 +55,17 @@ def force_table(steps: Iterable[Step], on: ForceOn = "tool") -> pa.Table:
 
 def force_tables(records: Iterable[Record], on: ForceOn = "tool") -> Iterator[pa.Table]:
     """Tables of about `BATCH_ROWS` rows; at least one, which may be empty."""
+    return (force_table(steps, on) for steps in _batches(records))
+
+
+def joined_arrays(records: Iterable[Record]) -> dict[str, np.ndarray[Any, Any]]:
+    """All force samples among records, as `force_arrays`; needs little more memory than they do."""
+    batches = [force_arrays(steps) for steps in _batches(records)]
+    return {name: np.concatenate([batch.pop(name) for batch in batches]) for name in COLUMNS}
+
+
+def _batches(records: Iterable[Record]) -> Iterator[list[Step]]:
+    """Steps with samples, about `BATCH_ROWS` of them together; at least one batch, which may be empty."""
     steps: list[Step] = []
     rows = 0
     sent = False
@@ -63,10 +74,10 @@ def force_tables(records: Iterable[Record], on: ForceOn = "tool") -> Iterator[pa
             steps.append(record)
             rows += len(record.samples.t_s)
         if rows >= BATCH_ROWS:
-            yield force_table(steps, on)
+            yield steps
             steps, rows, sent = [], 0, True
     if steps or not sent:
-        yield force_table(steps, on)
+        yield steps
 
 
 def _join(arrays: list[np.ndarray[Any, Any]]) -> np.ndarray[Any, Any]:

@@ -53,7 +53,7 @@ app.command("machinable", hidden=True, cls=HelpCommand)(reach)
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from twin import __version__
+        from twin.version import __version__
 
         typer.echo(__version__)
         raise typer.Exit

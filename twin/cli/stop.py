@@ -1,4 +1,4 @@
-"""Ctrl-C as a wish: the run ends at its next record, with everything in order."""
+"""Ctrl-C as a request: the run ends after the record at hand, with its outputs in order."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import Any, Self
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class StopWish:
+class StopRequest:
     """Notes Ctrl-C (or a request to terminate) inside its block; a second one interrupts at once.
 
     Outside the main thread nothing is noted.
 
     Attributes:
-        signal_number: what came, None so far.
+        signal_number: the signal that was received, None so far.
     """
 
     def __init__(self) -> None:
@@ -31,6 +31,10 @@ class StopWish:
     def __exit__(self, *_: object) -> None:
         for number, usual in self._usual.items():
             signal.signal(number, usual)
+
+    def came(self) -> bool:
+        """Whether the run is to end."""
+        return self.signal_number is not None
 
     def _note(self, number: int, _frame: FrameType | None) -> None:
         if self.signal_number is not None:

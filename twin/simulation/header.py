@@ -8,10 +8,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from twin import __version__
 from twin.arrays import frozen
 from twin.job import Job
 from twin.record import Attachment, RunHeader, ToolRecord
+from twin.version import __version__
 from twin.workpiece.trislice import TriSlices
 
 _LIBRARIES = ("numpy", "numba", "pyclipper", "trimesh")

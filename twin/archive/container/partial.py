@@ -8,6 +8,8 @@ from pathlib import Path
 
 from twin.errors import ArchiveError
 
+#: Bytes copied in one piece.
+_COPIED_TOGETHER = 1 << 22
 _NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
 
 
@@ -20,6 +22,38 @@ def reason(error: OSError) -> str:
     """What the system says, in lower case and without its number."""
     text = error.strerror or str(error)
     return text[:1].lower() + text[1:]
+
+
+def copy_file(source: Path, target: Path, *, force: bool = False) -> Path:
+    """Copy a file; the copy has its name only when it is whole.
+
+    Args:
+        target: missing folders above it are made.
+        force: replace a file that exists.
+
+    Returns:
+        ``target``.
+
+    Raises:
+        ArchiveError: another suffix, a file that exists, or one that cannot be read or written.
+    """
+    if target.suffix.lower() != source.suffix.lower():
+        raise ArchiveError(f"{target}: expected a file name that ends in {source.suffix}")
+    if force and target.exists() and target.samefile(source):
+        return target
+    file = PartialFile(target, force=force)
+    try:
+        with source.open("rb") as data:
+            while piece := data.read(_COPIED_TOGETHER):
+                file.write(piece)
+    except OSError as error:
+        file.discard()
+        raise ArchiveError(f"{source}: cannot be read: {reason(error)}") from error
+    except BaseException:
+        file.discard()
+        raise
+    file.commit()
+    return target
 
 
 class PartialFile:

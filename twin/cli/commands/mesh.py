@@ -37,8 +37,8 @@ def mesh(
 
 def _from_run(run: Path) -> SurfaceMesh:
     from twin.archive import read_run
-    from twin.cli.show.patches import joined
     from twin.record import WorkpiecePatch
+    from twin.run.patches import joined
 
     last = {record.patch: record for record in read_run(run) if isinstance(record, WorkpiecePatch)}
     return joined(last.values())

@@ -55,9 +55,9 @@ def replay(
     a second one gives them up. A replay that ends by an error leaves no outputs.
     """
     from twin.cli.commands.replaying import replay_job
-    from twin.cli.outputs import opened
     from twin.cli.show.progress import progress
     from twin.job import load_job
+    from twin.sinks.outputs import opened
 
     job = load_job(job_file)
     job = job.without_forces() if no_forces else job

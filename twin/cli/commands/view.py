@@ -24,9 +24,9 @@ def view(
         return
     from twin.archive import read_run
     from twin.cli.console import results
-    from twin.cli.outputs import opened
     from twin.cli.show.progress import progress
     from twin.record import RunHeader, Step
+    from twin.sinks.outputs import opened
 
     records = read_run(run)
     header = next(records)

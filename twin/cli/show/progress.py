@@ -11,19 +11,20 @@ from typing import Protocol, Self
 
 from twin.cli.console import errors
 from twin.cli.show.words import clock
+from twin.record import NcEvent, Record, RunHeader, Step
 
 #: The line is drawn anew at most this often, s.
 _EVERY_S = 0.1
 
 
 class Progress(Protocol):
-    """What is told of a run while it goes on."""
+    """Shows how far a run has come."""
 
     def start(self, total_s: float) -> None:
         """The run begins; its machine time is known."""
 
     def at(self, t_s: float, nc_line: int) -> None:
-        """It has come to this machine time and NC line."""
+        """The run is at this machine time and NC line."""
 
     def __enter__(self) -> Self: ...
 
@@ -33,12 +34,20 @@ class Progress(Protocol):
 
 
 def progress(*, quiet: bool) -> Progress:
-    """A line on the terminal; nothing where standard error is none, or when it shall be quiet."""
+    """A line on the terminal; nothing where standard error is not a terminal, or when ``quiet``."""
     return NoProgress() if quiet or not sys.stderr.isatty() else LineProgress()
 
 
+def report(line: Progress, record: Record) -> None:
+    """Show how far a run has come, from the record at hand."""
+    if isinstance(record, Step | NcEvent):
+        line.at(record.t_s, record.nc_line)
+    elif isinstance(record, RunHeader):
+        line.start(record.planned_time_s)
+
+
 class NoProgress:
-    """Says nothing."""
+    """Shows nothing."""
 
     def start(self, total_s: float) -> None:
         """Nothing."""
@@ -102,10 +111,10 @@ class LineProgress:
 
 @contextmanager
 def working(*, quiet: bool, even: bool = False) -> Iterator[Callable[[str, float], None]]:
-    """A bar for work in stages; gives what to tell a stage's name and share done. Draws where `progress` does.
+    """A bar for work in stages; yields a function of a stage's name and share done. Drawn where `progress` is.
 
     Args:
-        even: shares are those of the whole time, so that the time left can be told.
+        even: shares are those of the whole time, so that the time left can be estimated.
     """
     if quiet or not sys.stderr.isatty():
         yield lambda _what, _share: None
