@@ -18,8 +18,8 @@ from twin.cli.stop import StopRequest
 from twin.errors import CollisionError
 from twin.job import Job, load_job
 from twin.record import Record
+from twin.run.drive import drive
 from twin.run.run import Run, TemporaryArchive
-from twin.simulation.drive import drive
 from twin.simulation.replay import Replay
 from twin.sinks.outputs import opened
 

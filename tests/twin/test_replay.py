@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from gcode.errors import GcodeError
-from twin.errors import CollisionError, JobError, ReplayError
+from twin.errors import JobError, ReplayError
 from twin.job import job_from_dict
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, WorkpiecePatch
+from twin.run.drive import drive
 from twin.simulation.replay import Replay
 
 HEAD = "G21 G90 G94 G17 G40 G49 G80\nG54\nT1 M6\nS3000 M3\nG43 H1\n"
@@ -31,7 +32,7 @@ CUTTING = {"Ktc": 800.0, "Kte": 10.0, "Krc": 300.0, "Kre": 12.0, "Kac": 100.0, "
 
 
 def make(folder: Path, program: str, **changes: Any) -> Replay:
-    options = {name: changes.pop(name) for name in ("strict", "threads", "preview") if name in changes}
+    options = {name: changes.pop(name) for name in ("threads", "preview") if name in changes}
     (folder / "part.nc").write_text(program)
     data: dict[str, Any] = {
         "program": {"file": "part.nc"},
@@ -211,8 +212,12 @@ def test_collisions_are_reported_with_line_and_volume_and_the_replay_goes_on(
     assert found[0].message.startswith(f"{tmp_path / 'part.nc'}:{line}: T1: ")
     assert summary_of(records).complete
     assert summary_of(records).collisions == len(collisions_of(records))
-    with make(tmp_path, program, tools=[tool], strict=True) as replay, pytest.raises(CollisionError):
-        list(replay)
+    strict: list[Record] = []
+    with make(tmp_path, program, tools=[tool]) as replay:
+        ending = drive(replay, strict.append, strict=True)
+    assert ending.refused == strict[-2] == found[0]
+    assert ending.summary == strict[-1]
+    assert not ending.summary.complete
 
 
 def test_a_shank_of_the_cutters_own_diameter_may_rub_in_its_slot(tmp_path: Path) -> None:

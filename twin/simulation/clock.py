@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TypeAlias
 
 import numpy as np
@@ -19,10 +20,11 @@ _EDGE = 1e-9
 class SpindleClock:
     """Turns with the spindle, from angle 0 at program start, and never jumps.
 
-    Samples are counted in turned angle, whichever way: the n-th is taken when the spindle has turned by n angle steps.
+    Samples are counted by the angle turned, in either direction: the n-th is taken when the spindle has turned by n
+    angle steps.
 
     Args:
-        rows: samples a revolution.
+        rows: samples per revolution.
     """
 
     def __init__(self, rows: int) -> None:
@@ -32,10 +34,11 @@ class SpindleClock:
         self._angle_rad = 0.0
 
     def advance(self, t_s: float, duration_s: float, spindle_rpm: float) -> Turned:
-        """Turn for a while and tell the samples taken on the way.
+        """Turn for a while; the samples that are taken meanwhile.
 
         Args:
             t_s: machine time at the beginning.
+            duration_s: how long to turn.
             spindle_rpm: signed speed.
 
         Returns:
@@ -53,3 +56,15 @@ class SpindleClock:
         self._turned_steps = after
         self._angle_rad += sense * (after - before) * self._step_rad
         return times, angles
+
+    def turns(self, t_s: float, step_s: float, spindle_rpm: float) -> Iterator[Turned]:
+        """The samples of equal steps, one after another without end; the clock is at the last step taken.
+
+        Args:
+            t_s: machine time at the beginning of the first step.
+            step_s: duration of each.
+            spindle_rpm: signed speed.
+        """
+        while True:
+            yield self.advance(t_s, step_s, spindle_rpm)
+            t_s += step_s

@@ -1,4 +1,4 @@
-"""Collisions of one motion, gathered over its pieces and told as one record for each kind."""
+"""Contacts with the stock that must not be: gathered over a motion, and reported once for each kind."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from twin.arrays import FloatArray
+from twin.errors import ReplayError
 from twin.motion.path import Move
 from twin.record import Collision, CollisionKind
+from twin.simulation.material import Material
+from twin.simulation.tools import ToolSetup
 
 _WORDS: dict[CollisionKind, str] = {
     "rapid": "rapid motion through the stock",
@@ -20,7 +23,7 @@ _WORDS: dict[CollisionKind, str] = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contact:
-    """Where and when a collision began, and the material in its way."""
+    """Time and tool position at which a collision began, and the volume of material that was met."""
 
     t_s: float
     start_mm: FloatArray
@@ -38,7 +41,12 @@ class Contacts:
         self.found: dict[CollisionKind, Contact] = {}
 
     def add(self, touches: Iterable[tuple[CollisionKind, float]], t_s: float, start_mm: FloatArray) -> None:
-        """Note the touches of one piece that began at a time and place."""
+        """Note the touches of one piece of the motion.
+
+        Args:
+            touches: kind and volume of each, mm3.
+            t_s, start_mm: machine time and tool tip, shape (3,), at the beginning of the piece.
+        """
         for kind, volume in touches:
             first = self.found.get(kind, Contact(t_s, start_mm, 0.0))
             removing = kind in ("rapid", "spindle-stopped")
@@ -46,8 +54,38 @@ class Contacts:
             self.found[kind] = Contact(first.t_s, first.start_mm, total)
 
 
+class StartCheck:
+    """Refuses a tool whose first motion near the stock begins inside the material.
+
+    Args:
+        program: name of the NC program, for the message.
+    """
+
+    def __init__(self, program: str) -> None:
+        self._program = program
+        self._checked_tool = 0
+
+    def check(self, tool: ToolSetup, move: Move, material: Material) -> None:
+        """Check a motion near the stock; only the first one after a tool change can be refused.
+
+        Raises:
+            ReplayError: the tool is inside the stock, and has not cut its way there.
+        """
+        if tool.number == self._checked_tool:
+            return
+        self._checked_tool = tool.number
+        volume = material.volume_inside(tool, move.start_mm)
+        if material.significant(volume):
+            x, y, z = move.start_mm
+            raise ReplayError(
+                f"{self._program}:{move.nc_line}: tool T{tool.number} ({tool.description}) begins inside the "
+                f"stock at X{x:g} Y{y:g} Z{z:g}; expected a start outside it (machine.start_mm, or the program's "
+                "tool change position)"
+            )
+
+
 def collision_record(kind: CollisionKind, contact: Contact, move: Move, program: str) -> Collision:
-    """The record of a collision, with a line for people that names NC line and place."""
+    """The record of a collision, with a human-readable line that names NC line and position."""
     x, y, z = point(contact.start_mm)
     message = (
         f"{program}:{move.nc_line}: T{move.tool}: {_WORDS[kind]}, "
@@ -79,7 +117,7 @@ def box_of(move: Move) -> tuple[FloatArray, FloatArray]:
 
 
 def forbidden(move: Move) -> CollisionKind | None:
-    """What it is called when this motion meets material, None where cutting is what it is for."""
+    """The kind of collision when this motion meets material; None for a motion that is to cut."""
     if move.rapid:
         return "rapid"
     return "spindle-stopped" if move.spindle_rpm == 0.0 else None

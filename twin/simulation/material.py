@@ -1,4 +1,4 @@
-"""The workpiece under a tool: sweeps wait their turn, are subtracted, and what must not touch it is noticed."""
+"""The workpiece under a tool: sweeps wait their turn and are subtracted; forbidden contacts are detected."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.motion.sweep import Body, Sweep, SweptVolume
 from twin.record import CollisionKind
-from twin.simulation.setup import ToolSetup
+from twin.simulation.tools import ToolSetup
 from twin.tolerance import Tolerance
 from twin.workpiece.removal import Removal
 from twin.workpiece.trislice import TriSlices
@@ -19,7 +19,7 @@ from twin.workpiece.trislice import TriSlices
 #: Sweeps wait until the tool has gone on by this many slice pitches, or until this many are waiting.
 PENDING_PITCHES = 10.0
 PENDING_SWEEPS = 48
-#: Sweeps whose time has come are subtracted so many at once, so that threads have enough to do.
+#: At least this many sweeps are subtracted together, so that threads have enough to do.
 TOGETHER = 8
 #: A sweep this near to a motion's line lies on it, mm.
 SAME_LINE_MM = 1e-9
@@ -27,13 +27,23 @@ SAME_LINE_MM = 1e-9
 
 #: Kind of a collision and the volume of material in its way.
 Touch: TypeAlias = tuple[CollisionKind, float]
+#: Lower and upper corner, both of shape (3,).
+Box: TypeAlias = tuple[FloatArray, FloatArray]
 
 
 class Material:
     """Takes sweeps out of the workpiece in order.
 
-    The newest sweeps wait before they are subtracted from the slices and are left out of the material exactly
-    meanwhile: near the tool, where the surface has just been made, engagement does not depend on the slices' pitch.
+    The newest sweeps wait before they are subtracted from the slices; until then they are excluded from the material
+    exactly. So near the tool, where the surface has just been made, engagement does not depend on the slices' pitch.
+
+    Args:
+        workpiece: the slices.
+        tolerance: of geometry.
+        threads: how many work on the slices.
+
+    Attributes:
+        removed_mm3: volume removed by each tool, by number.
     """
 
     def __init__(self, workpiece: TriSlices, tolerance: Tolerance, threads: int) -> None:
@@ -43,13 +53,18 @@ class Material:
         self._waiting: deque[tuple[Sweep, int]] = deque()
         self._window_mm = PENDING_PITCHES * float(np.max(workpiece.pitch_mm))
         self.removed_mm3: dict[int, float] = {}
-        self.changed: list[tuple[FloatArray, FloatArray]] = []
+        self._changed: list[Box] = []
 
     def pending(self, tool: int, start_mm: FloatArray, feed: FloatArray) -> SweptVolume:
-        """What is not yet subtracted from the slices, and can have reached the front of a tool on a straight motion.
+        """Sweeps that are not yet subtracted from the slices and can have reached the front of a moving tool.
 
-        A sweep of the same tool that lies on the motion's line, behind its start, cannot: a convex tool there lies
+        A sweep of the same tool that lies on the motion's line, before its start, cannot: a convex tool there lies
         behind the plane that touches any front point.
+
+        Args:
+            tool: number of the moving tool.
+            start_mm: tool tip at the start of a straight motion, shape (3,).
+            feed: unit vector along it, shape (3,).
         """
         return SweptVolume([sweep for sweep, by in self._waiting if by != tool or not _behind(sweep, start_mm, feed)])
 
@@ -67,10 +82,10 @@ class Material:
         """Move the cutting part in a straight line: it removes material, now or a little later.
 
         Args:
-            forbidden: what it is called when it meets material, None where it may.
+            forbidden: kind of the collision when it meets material, None for a motion that is to cut.
 
         Yields:
-            The touch, if it is forbidden and there is one.
+            The touch, if it is forbidden and material was met.
         """
         if forbidden is None:
             self._wait(Sweep(tool.cutter, start_mm, end_mm), tool.number)
@@ -107,31 +122,36 @@ class Material:
         self._subtract(len(self._waiting))
 
     def volume_inside(self, tool: ToolSetup, tip_mm: FloatArray) -> float:
-        """Volume of material that the cutting part stands in, not moving."""
+        """Volume of material inside the cutting part at rest, mm3."""
         self.flush()
         return self._removal.cut(Sweep(tool.cutter, tip_mm, tip_mm), apply=False)
 
     def significant(self, volume_mm3: float) -> bool:
-        """Whether a volume is more than a touch within tolerance."""
+        """Whether a volume is larger than the tolerance for contact."""
         return volume_mm3 > self._tolerance.contact_mm3
 
     def _subtract(self, count: int) -> float:
-        """Subtract the sweeps that have waited longest; returns the removed volume."""
+        """Subtract the sweeps that have waited longest; returns the removed volume, mm3."""
         taken = [self._waiting.popleft() for _ in range(count)]
         volumes = self._removal.cut_all([sweep for sweep, _ in taken]) if taken else np.zeros(0)
         for (sweep, tool), volume in zip(taken, volumes.tolist(), strict=True):
             if volume > 0.0:
                 self.removed_mm3[tool] = self.removed_mm3.get(tool, 0.0) + volume
-                self.changed.append(sweep.bounds_mm)
+                self._changed.append(sweep.bounds_mm)
         return float(volumes.sum())
 
+    def take_changed(self) -> list[Box]:
+        """Boxes in which material was removed since this was last asked."""
+        changed, self._changed = self._changed, []
+        return changed
+
     def close(self) -> None:
-        """Let worker threads go."""
+        """End the worker threads."""
         self._removal.close()
 
 
 def _behind(sweep: Sweep, start_mm: FloatArray, feed: FloatArray) -> bool:
-    """Whether a straight sweep lies on the line of a motion, behind its start."""
+    """Whether a straight sweep lies on the line of a motion, before its start."""
     behind = np.array([start_mm - sweep.start_mm, start_mm - sweep.end_mm])
     along = behind @ feed
     aside = np.abs(behind - along[:, None] * feed).max()

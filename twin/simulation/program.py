@@ -1,67 +1,138 @@
-"""A job's NC program as motions and events, and what must hold of it before anything is cut."""
+"""A job's NC program as motions and events: the machine that it runs on, and what must hold before anything is cut."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
-
-import numpy as np
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 from gcode.dialects import dialect_named
 from gcode.events import Event, ToolChange
 from gcode.flow.interpret import interpret
 from gcode.language.program import read_program
-from gcode.settings import MachineSettings
+from gcode.settings import MachineSettings, ToolOffset
+from twin.arrays import FloatArray
 from twin.errors import ReplayError
-from twin.job import Job
+from twin.job import Machine, Program, Tool
 from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Move
+from twin.workpiece.stock import SliceSet
+
+#: Height of the gauge point's reference position above the highest point of stock and longest tool, mm.
+HOME_CLEARANCE_MM = 100.0
 
 
-def program_moves(job: Job, settings: MachineSettings) -> Iterator[Move | Event]:
-    """Motions of the tool tip in workpiece coordinates, and what else the program does, in order.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ProgramMoves:
+    """Motions of the tool tip in workpiece coordinates, and the other events of a program, in order.
+
+    The program is interpreted anew each time this is iterated, so memory does not grow with its length.
+
+    Attributes:
+        file: the NC program.
+        dialect: name of the control's dialect.
+        settings: the machine as the interpreter needs it.
+        origin_mm: shape (3,), work offset in which the stock is given.
+        tool_length_mm: by tool number.
+        rapid_mm_min: speed of positioning motions.
 
     Raises:
         GcodeError: a program that cannot be interpreted, when its line comes.
         TwinError: a motion that cannot be replayed.
     """
-    program = job.program
-    events = interpret(
-        read_program(program.file), file=str(program.file), dialect=dialect_named(program.dialect), settings=settings
-    )
-    return moves_from_nc(
-        events,
-        origin_mm=np.array(job.machine.offsets[job.stock.wcs]),
-        start_mm=settings.start_mm,
-        tool_length_mm={t.number: t.length_mm for t in job.tools},
-        rapid_mm_min=job.machine.rapid_mm_min,
-    )
+
+    file: Path
+    dialect: str
+    settings: MachineSettings
+    origin_mm: FloatArray
+    tool_length_mm: Mapping[int, float]
+    rapid_mm_min: float
+
+    def __iter__(self) -> Iterator[Move | Event]:
+        events = interpret(
+            read_program(self.file),
+            file=str(self.file),
+            dialect=dialect_named(self.dialect),
+            settings=self.settings,
+        )
+        return moves_from_nc(
+            events,
+            origin_mm=self.origin_mm,
+            start_mm=self.settings.start_mm,
+            tool_length_mm=dict(self.tool_length_mm),
+            rapid_mm_min=self.rapid_mm_min,
+        )
+
+    def checked_time_s(self, tool_change_s: float) -> float:
+        """Machine time of the whole program, motions and tool changes; all of it is read and its tools checked.
+
+        Args:
+            tool_change_s: time of one tool change.
+
+        Raises:
+            ReplayError: a tool that is not in the job, a feed motion without a tool.
+            TwinError, GcodeError: as the class.
+        """
+        return math.fsum(self._checked_durations(tool_change_s))
+
+    def _checked_durations(self, tool_change_s: float) -> Iterator[float]:
+        tools: Collection[int] = self.tool_length_mm.keys()
+        known = ", ".join(str(n) for n in sorted(tools))
+        for item in self:
+            if isinstance(item, ToolChange):
+                if item.tool not in tools and item.tool != 0:
+                    raise ReplayError(f"{item.place}: tool T{item.tool} is not in the job; expected one of {known}")
+                yield tool_change_s
+            elif isinstance(item, Move):
+                if item.tool == 0 and not item.rapid and item.length_mm > 0.0:
+                    raise ReplayError(
+                        f"{self.file}:{item.nc_line}: feed motion without a tool in the spindle; "
+                        "expected a tool change (T.. M6) before it, or program.tool in the job"
+                    )
+                yield item.duration_s
 
 
-def checked_time_s(job: Job, settings: MachineSettings, tools: Collection[int]) -> float:
-    """How long the program takes, motions and tool changes, with the whole of it read and its tools checked.
+def program_moves(
+    program: Program, machine: Machine, tools: Sequence[Tool], origin_mm: FloatArray, stock: SliceSet
+) -> ProgramMoves:
+    """A job's program on its machine.
 
     Args:
-        tools: numbers of the job's tools.
-
-    Raises:
-        ReplayError: a tool that is not in the job, a feed motion without a tool.
-        TwinError, GcodeError: as `program_moves`.
+        origin_mm: shape (3,), work offset in which the stock is given.
+        stock: the machine's home position is over it, where the job does not say one.
     """
-    return math.fsum(_checked_durations(job, settings, tools))
+    return ProgramMoves(
+        file=Path(program.file),
+        dialect=program.dialect,
+        settings=_machine_settings(program, machine, tools, origin_mm, stock),
+        origin_mm=origin_mm,
+        tool_length_mm={t.number: t.length_mm for t in tools},
+        rapid_mm_min=machine.rapid_mm_min,
+    )
 
 
-def _checked_durations(job: Job, settings: MachineSettings, tools: Collection[int]) -> Iterator[float]:
-    known = ", ".join(str(n) for n in sorted(tools))
-    for item in program_moves(job, settings):
-        if isinstance(item, ToolChange):
-            if item.tool not in tools and item.tool != 0:
-                raise ReplayError(f"{item.place}: tool T{item.tool} is not in the job; expected one of {known}")
-            yield job.machine.tool_change_s
-        elif isinstance(item, Move):
-            if item.tool == 0 and not item.rapid and item.length_mm > 0.0:
-                raise ReplayError(
-                    f"{job.program.file}:{item.nc_line}: feed motion without a tool in the spindle; "
-                    "expected a tool change (T.. M6) before it, or program.tool in the job"
-                )
-            yield item.duration_s
+def _machine_settings(
+    program: Program, machine: Machine, tools: Sequence[Tool], origin_mm: FloatArray, stock: SliceSet
+) -> MachineSettings:
+    """The machine as the interpreter needs it.
+
+    Without a home position in the job it is over the middle of the stock, above it and the longest tool.
+    """
+    middle = origin_mm + 0.5 * (stock.low_mm + stock.high_mm)
+    longest = max((tool.length_mm for tool in tools), default=0.0)
+    top = float(origin_mm[2] + stock.high_mm[2]) + longest + HOME_CLEARANCE_MM
+    home = machine.home_mm or (float(middle[0]), float(middle[1]), top)
+    return MachineSettings(
+        offsets={str(name): position for name, position in machine.offsets.items()},
+        home_mm=home,
+        start_mm=machine.start_mm or home,
+        tools={t.number: ToolOffset(length_mm=t.length_mm, radius_mm=t.diameter_mm / 2.0) for t in tools},
+        tool=program.tool,
+        arc_centres=program.arc_centres,
+        block_delete=program.block_delete,
+        units=program.units,
+        search_path=tuple(program.search_path),
+        decimal_point=program.decimal_point,
+        compensation_startup=program.compensation_startup,
+    )

@@ -18,7 +18,7 @@ from twin.arrays import FloatArray
 from twin.cutting.engagement import NO_ENGAGEMENT, Positions, Scratch
 from twin.motion.sweep import SweptVolume
 from twin.record import Engagement
-from twin.simulation.setup import ToolSetup
+from twin.simulation.tools import ToolSetup
 from twin.workpiece.trislice import TriSlices
 
 _T = TypeVar("_T")

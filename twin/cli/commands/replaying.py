@@ -13,7 +13,7 @@ from twin.cli.show.watch import Watch
 from twin.cli.stop import StopRequest
 from twin.job import Job
 from twin.record import Collision, Record, RunSummary
-from twin.simulation.drive import Replaying, drive
+from twin.run.drive import Replaying, drive
 from twin.sinks.outputs import Write
 
 if TYPE_CHECKING:
