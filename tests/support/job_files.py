@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
@@ -36,8 +37,14 @@ SOUND: dict[str, Any] = {
 
 PROGRAM = "%\nT1 M6\nS3600 M3\nG54 G0 X-6 Y15\nG1 Z-2 F600\nX66\nM30\n%\n"
 
-#: For `job_data`: take the key away.
-NOTHING = object()
+
+class Nothing(Enum):
+    """For `job_data`: take the key away. An enum, so that test names made from it are equal in all workers."""
+
+    NOTHING = "no value"
+
+
+NOTHING = Nothing.NOTHING
 
 
 def job_data(**changes: object) -> dict[str, Any]:
