@@ -15,6 +15,7 @@ import numba
 
 from twin.jit.sources import source_hash
 from twin.jit.store import Store, store
+from twin.version import __version__
 
 try:
     from twin.jit.kept_code import KeptCode as _KeptCode
@@ -54,8 +55,6 @@ def folder_name(function: Callable[..., Any]) -> str:
     Raises:
         OSError, TypeError: the function has no source that can be read.
     """
-    from twin import __version__
-
     return f"{__version__}/{function.__module__}-{source_hash(Path(inspect.getfile(function)))}"
 
 

@@ -122,9 +122,9 @@ def test_a_change_of_the_source_compiles_again(kept: Path, source: Path, monkeyp
 def test_another_version_of_the_package_has_its_own_folder(
     kept: Path, source: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("twin.__version__", "8.0", raising=False)
+    monkeypatch.setattr("twin.jit.compiled.__version__", "8.0")
     fresh(source, monkeypatch).inner(2.0)
-    monkeypatch.setattr("twin.__version__", "9.0", raising=False)
+    monkeypatch.setattr("twin.jit.compiled.__version__", "9.0")
     again = fresh(source, monkeypatch)
     again.inner(2.0)
     assert hits(again.inner) == 0

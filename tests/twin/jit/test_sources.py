@@ -65,3 +65,9 @@ def test_circular_imports_end() -> None:
 
 def test_modules_have_hashes_of_their_own() -> None:
     assert len({source_hash(file) for file in KERNELS}) == len(KERNELS)
+
+
+def test_a_kernel_module_does_not_depend_on_the_whole_package() -> None:
+    text = (ROOT / "twin" / "cutting" / "kernels.py").read_text()
+    assert "twin" not in imported_names(text)
+    assert "twin" not in imported_names((ROOT / "twin" / "jit" / "compiled.py").read_text())
