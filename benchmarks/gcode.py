@@ -24,7 +24,7 @@ from pathlib import Path
 
 from benchmarks.report import report
 from gcode.bulk.plain_runs import PlainStart, plain_run
-from gcode.flow.interpret import interpret
+from gcode.flow.interpreter import interpret
 from gcode.report.motion_arrays import motion_arrays
 
 RS274 = shutil.which("rs274")

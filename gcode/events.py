@@ -118,7 +118,7 @@ class ArcMotion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Dwell:
-    """G4: the machine waits; the spindle turns on."""
+    """G4: the axes wait; the spindle keeps its state."""
 
     place: Place
     state: MotionState
@@ -144,7 +144,7 @@ class SpindleChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoolantChange:
-    """M7, M8, M9."""
+    """Coolant: which of mist (M7) and flood (M8) are on; M9 turns both off."""
 
     place: Place
     mist: bool

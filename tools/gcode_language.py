@@ -18,7 +18,7 @@ from gcode.dialects.macro_language import FANUC_MACRO, LINUXCNC_MACRO, MacroLang
 from gcode.flow import leader, owords
 from gcode.flow.system_variables import _CONSTANTS as CONSTANTS
 from gcode.flow.system_variables import _NAMED as NAMED
-from gcode.language import parse, program
+from gcode.language import block_parser, program
 from gcode.language.expressions import MAX_DEPTH, EvaluationError, Source, parse_operand
 from gcode.phases import splines
 from gcode.settings import ADDITIONAL_OFFSETS, Limits, MachineSettings, ToolOffset
@@ -203,8 +203,8 @@ def limits() -> str:
         ("mistakes that `check` collects", str(given.errors), "setting `limits.errors`"),
         ("size of a program file", f"{program.MAX_BYTES // 2**20:,} MiB", ""),
         ("size of a table or settings file", f"{LARGEST_BYTES // 2**20} MiB", ""),
-        ("length of a line", f"{parse.MAX_LINE:,} characters", ""),
-        ("size of a number", f"{parse.MAX_VALUE:,.0f}", ""),
+        ("length of a line", f"{block_parser.MAX_LINE:,} characters", ""),
+        ("size of a number", f"{block_parser.MAX_VALUE:,.0f}", ""),
         ("brackets inside each other", str(MAX_DEPTH), ""),
         ("steps of one block with a cycle", f"{MOST_STEPS:,}", ""),
         ("additional work offsets", str(ADDITIONAL_OFFSETS), "G54.1 P"),

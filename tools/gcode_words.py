@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from gcode.control.modal import _COMPANIONS as COMPANIONS
-from gcode.control.modal import _CORNERED as CORNERED
+from gcode.control.command import _COMPANIONS as COMPANIONS
+from gcode.control.command import _CORNERED as CORNERED
 from gcode.dialects import Dialect
 
 #: Letters and what their words mean, in the order of the page.
@@ -55,13 +55,13 @@ PHASES: Mapping[str, str] = {
     "spindle_on": "M3 M4",
     "rigid_tapping": "M29",
     "coolant_on": "M7 M8",
-    "turning_off": "G15 G50 G50.1 G69",
+    "transform_off": "G15 G50 G50.1 G69",
     "work_offset": "work offset: G54...",
     "shift": "G52 G92...",
     "length": "tool length: G43 G44 G49 H",
     "radius": "cutter compensation: G40 G41 G42 D",
     "data": "G10",
-    "turning": "G16 G51 G51.1 G68",
+    "transform": "G16 G51 G51.1 G68",
     "notice": "codes without motion: notices",
     "dwell": "G4",
     "reference": "reference points: G27 to G30, G60",

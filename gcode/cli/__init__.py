@@ -4,6 +4,6 @@ Results go to standard output, everything else to standard error. What is heavy 
 that ``gcode --help`` answers at once.
 """
 
-from gcode.cli.run import main, run
+from gcode.cli.entry import main, run
 
 __all__ = ["main", "run"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gcode.cli import exit_codes
-from gcode.cli.machine import Setup, with_machine
+from gcode.cli.machine_options import Setup, with_machine
 
 if TYPE_CHECKING:
     from gcode.cli.findings import Findings
@@ -25,8 +25,8 @@ def check(
     setup: Setup,
 ) -> None:
     """Find the mistakes of programs: as many as one run can tell, each with its place."""
+    from gcode.cli.console import fail, written
     from gcode.cli.findings import findings
-    from gcode.cli.say import fail, written
 
     codes = {exit_codes.OK}
     with written():
@@ -42,7 +42,7 @@ def check(
 
 
 def _print_text(found: Findings, notices: bool) -> None:
-    from gcode.cli.words import plural
+    from gcode.cli.number_format import plural
     from gcode.underline import harmless
 
     for error in found.errors:

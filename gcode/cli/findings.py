@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gcode.cli.machine import Setup
+from gcode.cli.machine_options import Setup
 from gcode.errors import GcodeError, Place
 from gcode.events import Notice
-from gcode.flow.interpret import check, read_program, run
-from gcode.language.program import Program
+from gcode.flow.interpreter import check, run
+from gcode.language.program import Program, read_program
 from gcode.report.motion_json import call_objects
 
 #: So many lines of a notice's group are named.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gcode.cli.machine import ProgramFile, Setup, with_machine
+from gcode.cli.machine_options import ProgramFile, Setup, with_machine
 
 
 @with_machine
@@ -19,8 +19,8 @@ def motions(
     import json
     import sys
 
-    from gcode.cli.say import written
-    from gcode.flow.interpret import interpret_file
+    from gcode.cli.console import written
+    from gcode.flow.interpreter import interpret_file
     from gcode.report.motion_json import motion_objects
 
     encode = json.JSONEncoder(allow_nan=False).encode

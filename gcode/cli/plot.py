@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from gcode.cli.machine import ProgramFile, Setup, with_machine
+from gcode.cli.machine_options import ProgramFile, Setup, with_machine
 
 
 class View(StrEnum):
@@ -40,8 +40,8 @@ def plot(
     setup: Setup,
 ) -> None:
     """Draw the path of a program: rapids dashed, feeds coloured, the same scale along all axes."""
-    from gcode.cli.say import UnusableFileError, with_progress
-    from gcode.flow.interpret import interpret_file
+    from gcode.cli.console import UnusableFileError, with_progress
+    from gcode.flow.interpreter import interpret_file
     from gcode.report.plot import PlotError, check_picture, plot_path
 
     try:

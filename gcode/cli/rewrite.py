@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from gcode.cli.machine import DialectName, MachineUnit, ProgramFile, Setup, with_machine
-
-if TYPE_CHECKING:
-    from gcode.events import Point
-    from gcode.settings import MachineSettings
+from gcode.cli.machine_options import DialectName, MachineUnit, ProgramFile, Setup, with_machine
 
 
 class Distance(StrEnum):
@@ -60,10 +56,10 @@ def rewrite(
     Subprograms, macros, cycles, work offsets and cutter compensation are worked out; what is written are plain
     motions. A length offset stays G43 H, so the same tool table must be at the control.
     """
-    from gcode.cli.say import UnusableFileError, with_progress
+    from gcode.cli.console import UnusableFileError, with_progress
     from gcode.dialects import dialect_named
-    from gcode.flow.interpret import interpret_file
-    from gcode.write import WriteOptions, write_file
+    from gcode.flow.interpreter import interpret_file
+    from gcode.write import WriteOptions, write_program
 
     try:
         options = WriteOptions(
@@ -75,18 +71,8 @@ def rewrite(
             number_step=number_step,
             program_number=program_number,
             wcs=wcs,
-            shift_mm=_zero(setup.settings, wcs),
-            tools=setup.settings.tools,
-            tool=setup.settings.tool,
-        )
+        ).for_machine(setup.settings)
         events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
-        write_file(out, with_progress(events, file.name), options)
+        write_program(out, with_progress(events, file.name), options)
     except (ValueError, OSError) as error:
         raise UnusableFileError(str(error)) from None
-
-
-def _zero(settings: MachineSettings, wcs: str) -> Point:
-    """Place of a work zero in machine coordinates."""
-    x, y, z = settings.offsets.get(wcs, (0.0, 0.0, 0.0))
-    dx, dy, dz = settings.external_offset_mm
-    return (x + dx, y + dy, z + dz)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from gcode.cli.machine import ProgramFile, Setup, with_machine
+from gcode.cli.machine_options import ProgramFile, Setup, with_machine
 
 
 def _rate(value: float) -> float:
@@ -29,8 +29,8 @@ def stats(
 
     Times are those of feeds, dwells, and rapids at the given rate; accelerations and tool changes are not in them.
     """
-    from gcode.cli.say import results, with_progress, written
-    from gcode.flow.interpret import interpret_file
+    from gcode.cli.console import results, with_progress, written
+    from gcode.flow.interpreter import interpret_file
     from gcode.report.stats import program_stats
 
     events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)

@@ -7,8 +7,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from gcode.cli.words import clock, grouped, joined, plural, short, span
-from gcode.report.stats import TYPES, Box, ProgramStats, Sums, Values
+from gcode.cli.number_format import clock, grouped, joined, plural, short, span
+from gcode.report.stats import TYPES, Box, MotionTotals, ProgramStats, ValueSet
 
 #: So many feeds or speeds are told one by one.
 _MOST_VALUES = 5
@@ -79,7 +79,7 @@ def _tools(stats: ProgramStats) -> Table:
     return made
 
 
-def _values(values: Values | None) -> str:
+def _values(values: ValueSet | None) -> str:
     if values is None:
         return "none"
     return joined(values.each, _MOST_VALUES) if values.each is not None else span(values.least, values.largest)
@@ -95,7 +95,7 @@ def _motions(stats: ProgramStats) -> Table:
     return made
 
 
-def _counts(sums: Sums) -> list[str]:
+def _counts(sums: MotionTotals) -> list[str]:
     return [grouped(sums.motions[name]) if name in sums.motions else "" for name in TYPES]
 
 

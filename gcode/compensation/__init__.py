@@ -8,11 +8,11 @@ and `cancel`. All lengths are mm; motions are in machine coordinates.
 from __future__ import annotations
 
 from gcode.compensation.fanuc import FanucCompensation, signed
+from gcode.compensation.interface import Compensation, Hand, Style, finite_radius
+from gcode.compensation.interface import plane_refused as _plane_refused
 from gcode.compensation.linuxcnc import LinuxCncCompensation
-from gcode.compensation.planar import Frame
-from gcode.compensation.value import Compensation, Hand, Style, finite_radius
-from gcode.compensation.value import plane_refused as _plane_refused
-from gcode.compensation.vectors import Joint, Kind
+from gcode.compensation.offset_vectors import Joint, StartupType
+from gcode.compensation.planar import WorkingPlane
 from gcode.errors import Place
 from gcode.events import Event, Motion, Plane, Point
 
@@ -46,15 +46,15 @@ def begin(
     """
     finite_radius(radius_mm, place)
     if style != "linuxcnc":
-        frame, offset = Frame(plane=plane), signed(side, radius_mm)
+        frame, offset = WorkingPlane(plane=plane), signed(side, radius_mm)
         at, height = frame.flat(position_mm), frame.height(position_mm)
-        kind: Kind = "A" if style == "fanuc-A" else "B"
+        kind: StartupType = "A" if style == "fanuc-A" else "B"
         return FanucCompensation(
             frame=frame, at=at, height=height, kind=kind, joint=joint, offset=offset, previous=offset
         )
     if plane == 19:
         raise _plane_refused(place, plane)
-    frame = Frame(plane=plane, mirrored=signed(side, radius_mm) < 0.0)
+    frame = WorkingPlane(plane=plane, mirrored=signed(side, radius_mm) < 0.0)
     at, height = frame.flat(position_mm), frame.height(position_mm)
     radius = abs(radius_mm)
     return LinuxCncCompensation(

@@ -5,8 +5,8 @@ from __future__ import annotations
 import cmath
 import math
 
+from gcode.compensation.interface import gouge
 from gcode.compensation.planar import Segment, dot, unit
-from gcode.compensation.value import gouge
 
 
 def meeting_point(before: Segment, segment: Segment, corner: complex, centre: complex, radius: float) -> complex:

@@ -1,17 +1,25 @@
 """Cutter compensation as FANUC's controls make it (operator's manual, "Details of cutter compensation").
 
-The control reads one motion in the plane ahead: each motion waits until the next one tells where it ends. At the end
-of a block offset vectors lead from the programmed corner to the tool's centre; `gcode.compensation.vectors` makes
-them. Offsets are signed here: positive to the left of the path, negative to the right.
+The control reads one motion in the plane ahead: each motion waits until the next one determines its end. At the end of
+a block offset vectors lead from the programmed corner to the tool's centre (`gcode.compensation.offset_vectors`).
+Offsets are signed here: positive to the left of the path, negative to the right.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from gcode.compensation.interface import Compensation, Hand, finite_radius, fits, gouge
+from gcode.compensation.offset_vectors import (
+    Corner,
+    Joint,
+    StartupType,
+    cancel_vectors,
+    corner_vectors,
+    startup_vectors,
+    upright,
+)
 from gcode.compensation.planar import Segment, dot
-from gcode.compensation.value import Compensation, Hand, finite_radius, fits, gouge
-from gcode.compensation.vectors import Corner, Joint, Kind, cancel_vectors, corner_vectors, startup_vectors, upright
 from gcode.errors import GcodeError, Place
 from gcode.events import Block, Event, LinearMotion, Motion, Notice, Point
 
@@ -51,7 +59,7 @@ class FanucCompensation(Compensation):
         held: what follows it.
     """
 
-    kind: Kind
+    kind: StartupType
     offset: float
     previous: float
     joint: Joint = "linear"

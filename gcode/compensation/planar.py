@@ -73,7 +73,7 @@ class Segment:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Frame:
+class WorkingPlane:
     """How points in space are seen flat.
 
     Attributes:

@@ -19,13 +19,13 @@ ORIGIN: Point = (0.0, 0.0, 0.0)
 _IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 #: Two places nearer than this are one. No control resolves better than 1e-4 mm, and sums of a program's numbers in
 #: doubles stay within 1e-9 mm over a machine's travel.
-SAME_PLACE_MM = 1e-6
+SAME_POSITION_MM = 1e-6
 #: Relative difference of two scale factors that counts as none.
 _SAME_SCALE = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Frame:
+class CoordinateFrame:
     """Where program coordinates lie in machine coordinates.
 
     Attributes:
@@ -101,7 +101,7 @@ def _product(a: Matrix, b: Matrix) -> Matrix:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Turning:
+class Transform:
     """A map of program coordinates onto program coordinates: p -> centre + M (p - centre)."""
 
     matrix: Matrix
@@ -113,9 +113,9 @@ class Turning:
         return plus(self.centre_mm, _times(self.matrix, difference(point, self.centre_mm)))
 
 
-def rotation(plane: int, angle_deg: float, centre_mm: Point = ORIGIN) -> Turning:
+def rotation(plane: int, angle_deg: float, centre_mm: Point = ORIGIN) -> Transform:
     """Turns a plane about a point, counter-clockwise seen from the plane's positive normal."""
-    return Turning(matrix=_rotated(plane, angle_deg), inverse=_rotated(plane, -angle_deg), centre_mm=centre_mm)
+    return Transform(matrix=_rotated(plane, angle_deg), inverse=_rotated(plane, -angle_deg), centre_mm=centre_mm)
 
 
 def _rotated(plane: int, angle_deg: float) -> Matrix:
@@ -139,31 +139,31 @@ def _matrix(rows: list[list[float]]) -> Matrix:
     return (x, y, z)
 
 
-def scaling(factors: Point, centre_mm: Point = ORIGIN) -> Turning:
+def scaling(factors: Point, centre_mm: Point = ORIGIN) -> Transform:
     """Scales along the axes about a point; a factor of -1 is a mirror image. No factor may be 0."""
     forward = _matrix([[factors[r] if r == k else 0.0 for k in range(3)] for r in range(3)])
     back = _matrix([[1.0 / factors[r] if r == k else 0.0 for k in range(3)] for r in range(3)])
-    return Turning(matrix=forward, inverse=back, centre_mm=centre_mm)
+    return Transform(matrix=forward, inverse=back, centre_mm=centre_mm)
 
 
-def frame_of(
-    zero_mm: Point, turnings: tuple[Turning, ...], *, shift_mm: Point = ORIGIN, extra: Extra = NO_EXTRA
-) -> Frame:
+def coordinate_frame(
+    zero_mm: Point, transforms: tuple[Transform, ...], *, shift_mm: Point = ORIGIN, extra: Extra = NO_EXTRA
+) -> CoordinateFrame:
     """The frame of a zero and of maps within it.
 
     Args:
         zero_mm: zero of the work offset in machine coordinates.
-        turnings: maps of program coordinates in the order in which they act on a point.
+        transforms: maps of program coordinates in the order in which they act on a point.
         shift_mm: added to program coordinates before the maps.
         extra: zero of the further axes.
     """
-    if not turnings:
+    if not transforms:
         x, y, z = zero_mm
         a, b, c = shift_mm
-        return Frame(zero_mm=(x + a, y + b, z + c), extra=extra)
+        return CoordinateFrame(zero_mm=(x + a, y + b, z + c), extra=extra)
     matrix, inverse, offset = _IDENTITY, _IDENTITY, shift_mm
-    for turning in turnings:
-        matrix, inverse = _product(turning.matrix, matrix), _product(inverse, turning.inverse)
-        offset = turning.of(offset)
+    for transform in transforms:
+        matrix, inverse = _product(transform.matrix, matrix), _product(inverse, transform.inverse)
+        offset = transform.of(offset)
     x, y, z = (zero + o for zero, o in zip(zero_mm, offset, strict=True))
-    return Frame(zero_mm=(x, y, z), matrix=matrix, inverse=inverse, extra=extra)
+    return CoordinateFrame(zero_mm=(x, y, z), matrix=matrix, inverse=inverse, extra=extra)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
-from gcode.control.coordinates import ORIGIN, SAME_PLACE_MM, Frame, Turning, frame_of, rotation
+from gcode.control.coordinates import ORIGIN, SAME_POSITION_MM, CoordinateFrame, Transform, coordinate_frame, rotation
 from gcode.control.waiting import WaitingPath
 from gcode.dialects import Dialect
 from gcode.events import NO_EXTRA, Extra, MotionState, Point
@@ -92,7 +92,7 @@ class Modes:
         spline_lead_mm: first control point that a following G5 without I and J takes, from its start; None for none.
         polar: True while X, Y are a radius and an angle (G16).
         polar_centre_mm: centre of polar coordinates, program coordinates; None for the program zero.
-        turnings: rotation, scaling and mirror image of program coordinates by the code that set them.
+        transforms: rotation, scaling and mirror image of program coordinates by the code that set them.
         surface_speed: G96's speed, m/min; None with G97.
         surface_speed_limit: largest spindle speed with G96, rpm; None without one.
         diameter: True while X words are diameters (G7).
@@ -122,7 +122,7 @@ class Modes:
     spline_lead_mm: tuple[float, float] | None = None
     polar: bool = False
     polar_centre_mm: Point | None = None
-    turnings: Mapping[str, Turning] = field(default_factory=dict)
+    transforms: Mapping[str, Transform] = field(default_factory=dict)
     surface_speed: float | None = None
     surface_speed_limit: float | None = None
     diameter: bool = False
@@ -150,7 +150,7 @@ class State:
     modes: Modes
     machine: MotionState
     setup: Setup
-    frame: Frame
+    frame: CoordinateFrame
     position_mm: Point
     extra: Extra = NO_EXTRA
     waiting: WaitingPath | None = None
@@ -202,31 +202,31 @@ class State:
 
 
 #: Order in which the maps of program coordinates act on a point.
-TURNING_ORDER = ("mirror", "scaling", "rotation")
+TRANSFORM_ORDER = ("mirror", "scaling", "rotation")
 
 
-def _frame(state: State) -> Frame:
+def _frame(state: State) -> CoordinateFrame:
     setup, dialect = state.setup, state.control.dialect
     offset = setup.offsets.get(state.machine.wcs, WorkOffset())
     shift = setup.shift if setup.shift_on else WorkOffset()
     zero = tuple(map(sum, zip(offset.zero_mm, setup.external_mm, setup.local_mm, strict=True)))
     extra = tuple(a + b for a, b in zip(offset.extra, shift.extra, strict=True))
-    turnings = tuple(state.modes.turnings[name] for name in TURNING_ORDER if name in state.modes.turnings)
+    transforms = tuple(state.modes.transforms[name] for name in TRANSFORM_ORDER if name in state.modes.transforms)
     if offset.rotation_deg:
-        turnings = (*turnings, rotation(17, offset.rotation_deg))
+        transforms = (*transforms, rotation(17, offset.rotation_deg))
     if dialect.shift_is_rotated:
-        return frame_of(_point(zero), turnings, shift_mm=shift.zero_mm, extra=extra)  # type: ignore[arg-type]
+        return coordinate_frame(_point(zero), transforms, shift_mm=shift.zero_mm, extra=extra)  # type: ignore[arg-type]
     zero = tuple(a + b for a, b in zip(zero, shift.zero_mm, strict=True))
-    return frame_of(_point(zero), turnings, extra=extra)  # type: ignore[arg-type]
+    return coordinate_frame(_point(zero), transforms, extra=extra)  # type: ignore[arg-type]
 
 
 def _point(values: tuple[float, ...]) -> Point:
     return (values[0], values[1], values[2])
 
 
-def same_place(a: Point, b: Point) -> bool:
+def same_position(a: Point, b: Point) -> bool:
     """True where two points are one as far as any control can tell."""
-    return all(abs(p - q) <= SAME_PLACE_MM for p, q in zip(a, b, strict=True))
+    return all(abs(p - q) <= SAME_POSITION_MM for p, q in zip(a, b, strict=True))
 
 
 def initial_state(dialect: Dialect, settings: MachineSettings) -> State:
@@ -237,7 +237,7 @@ def initial_state(dialect: Dialect, settings: MachineSettings) -> State:
         return_to_r=dialect.power_on_return_to_r,
         unit_mm=unit,
         absolute_centres=settings.arc_centres == "absolute",
-        turnings=MappingProxyType({}),
+        transforms=MappingProxyType({}),
     )
     references = {1: (settings.home_mm, NO_EXTRA)}
     references.update({number: (point, NO_EXTRA) for number, point in settings.reference_points_mm.items()})
@@ -256,7 +256,7 @@ def initial_state(dialect: Dialect, settings: MachineSettings) -> State:
         modes=modes,
         machine=MotionState(tool=settings.tool, wcs=settings.wcs),
         setup=setup,
-        frame=Frame(),
+        frame=CoordinateFrame(),
         position_mm=settings.start_mm,
     )
     return state.reframed()

@@ -1,11 +1,11 @@
 """Canned cycles of mills as pure functions: the words of a block in, the steps of its holes out."""
 
-from gcode.cycles.call import CycleInput, CycleOutput
+from gcode.cycles.controls import FANUC_CYCLES, HAAS_CYCLES, LINUXCNC_CYCLES
 from gcode.cycles.errors import CycleError
+from gcode.cycles.execution import run_cycle
+from gcode.cycles.interface import CycleInput, CycleOutput
 from gcode.cycles.rules import Act, Cycle, CycleRules, DwellUnit
-from gcode.cycles.run import run_cycle
 from gcode.cycles.steps import Move, OperatorStop, Orient, Pause, Position, Spindle, Step
-from gcode.cycles.tables import FANUC_CYCLES, HAAS_CYCLES, LINUXCNC_CYCLES
 
 __all__ = [
     "FANUC_CYCLES",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from gcode.cycles.call import CycleInput
 from gcode.cycles.errors import CycleError
+from gcode.cycles.interface import CycleInput
 from gcode.cycles.rules import Cycle, CycleRules
 from gcode.cycles.words import BOTTOM, INCREMENTAL
 

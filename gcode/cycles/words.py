@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from gcode.cycles.call import CycleInput
 from gcode.cycles.errors import CycleError
+from gcode.cycles.interface import CycleInput
 from gcode.cycles.rules import Cycle, CycleRules
 
 #: Key of the bottom's coordinate, which is a Z, Y or X word by the plane.
@@ -21,7 +21,7 @@ _OWN = "IJKLPQ"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Words:
+class CycleWords:
     """The words that hold for a block: its own and those given before.
 
     Attributes:
@@ -40,7 +40,7 @@ def has_axis(call: CycleInput) -> bool:
     return any(axis in call.words for axis in call.axes)
 
 
-def read_words(rules: CycleRules, cycle: Cycle, call: CycleInput) -> Words:
+def read_words(rules: CycleRules, cycle: Cycle, call: CycleInput) -> CycleWords:
     """Checks the block's words and adds those that earlier blocks gave.
 
     Raises:
@@ -55,7 +55,7 @@ def read_words(rules: CycleRules, cycle: Cycle, call: CycleInput) -> Words:
     unit = call.unit_mm if rules.sticky_in_program_unit else 1.0
     stored = {key: value / unit if key in _LENGTHS else value for key, value in given.items()}
     before = {} if rules.memory == "mode" and call.first_of_mode else call.sticky
-    return Words(
+    return CycleWords(
         data=_over(usable, dropped, given),
         sticky=_over(before, dropped, {**stored, _CODE: float(call.code[1:])}),
         repeats=repeats,

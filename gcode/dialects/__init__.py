@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from gcode.dialects.base import ArcTolerance, Dialect, DwellWord
+from gcode.dialects.dialect import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.fanuc import FANUC
 from gcode.dialects.grbl import GRBL
 from gcode.dialects.haas import HAAS

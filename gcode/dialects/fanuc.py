@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from gcode.cycles import FANUC_CYCLES
-from gcode.dialects.base import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.codes import CYCLES, FULL, Table, executed, neutral, noticed, owning, refused
+from gcode.dialects.dialect import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.macro_language import FANUC_MACRO
 
 FIVE_AXIS = "five-axis machining"
@@ -20,14 +20,14 @@ CODES: Table = {
     **executed("spindle", "spindle_off", {"M19": "spindle orientation"}, "RPQ"),
     **executed("cycle", "modes", {"G80": "canned cycle cancel"}),
     **executed("cycle", "modes", CYCLES, CYCLE_LETTERS),
-    **executed("polar", "turning_off", {"G15": "polar coordinates cancel"}),
-    **executed("polar", "turning", {"G16": "polar coordinates"}),
-    **executed("scaling", "turning_off", {"G50": "scaling cancel"}),
-    **owning("scaling", "turning", {"G51": "scaling"}, "XYZPIJK"),
-    **executed("mirror", "turning_off", {"G50.1": "mirror image cancel"}, "XYZ"),
-    **owning("mirror", "turning", {"G51.1": "mirror image"}, "XYZ"),
-    **executed("rotation", "turning_off", {"G69": "coordinate rotation cancel"}),
-    **owning("rotation", "turning", {"G68": "coordinate rotation"}, "XYZR"),
+    **executed("polar", "transform_off", {"G15": "polar coordinates cancel"}),
+    **executed("polar", "transform", {"G16": "polar coordinates"}),
+    **executed("scaling", "transform_off", {"G50": "scaling cancel"}),
+    **owning("scaling", "transform", {"G51": "scaling"}, "XYZPIJK"),
+    **executed("mirror", "transform_off", {"G50.1": "mirror image cancel"}, "XYZ"),
+    **owning("mirror", "transform", {"G51.1": "mirror image"}, "XYZ"),
+    **executed("rotation", "transform_off", {"G69": "coordinate rotation cancel"}),
+    **owning("rotation", "transform", {"G68": "coordinate rotation"}, "XYZR"),
     **executed("work-offset", "work_offset", {f"G{n}": f"work offset {n - 53}" for n in range(54, 60)}, "P"),
     **executed("work-offset", "work_offset", {"G54.1": "additional work offset"}, "P"),
     **owning("one-shot", "shift", {"G92": "coordinate system setting, spindle speed limit"}, "XYZ"),
@@ -76,7 +76,7 @@ FANUC = Dialect(
     codes=CODES,
     order=(
         *("feed_mode", "modes", "feed", "tool", "tool_change", "speed_mode", "speed", "spindle_on", "rigid_tapping"),
-        *("coolant_on", "turning_off", "work_offset", "shift", "length", "radius", "data", "turning"),
+        *("coolant_on", "transform_off", "work_offset", "shift", "length", "radius", "data", "transform"),
         *("notice", "dwell", "reference", "motion", "spindle_off", "coolant_off", "call", "stop"),
     ),
     free_letters="NOFSTHD",

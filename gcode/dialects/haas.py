@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from gcode.cycles import HAAS_CYCLES
-from gcode.dialects.base import DwellWord
 from gcode.dialects.codes import Table, executed, noticed, refused
+from gcode.dialects.dialect import DwellWord
 from gcode.dialects.fanuc import CODES as FANUC_CODES
 from gcode.dialects.fanuc import FANUC, FIVE_AXIS
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from gcode.cycles import LINUXCNC_CYCLES
-from gcode.dialects.base import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.codes import FULL, Table, executed, noticed, owning, refused
+from gcode.dialects.dialect import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.macro_language import LINUXCNC_MACRO
 
 _ALL = "XYZABC"

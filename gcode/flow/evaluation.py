@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcode.flow.session import Session
 from gcode.language.blocks import Assignment, ParsedBlock
-from gcode.phases.increments import in_increments
+from gcode.phases.decimal_point import in_increments
 
 #: Macro calls, whose arguments are not rounded.
 MACRO_CALLS = frozenset({65.0, 66.0, 66.1})

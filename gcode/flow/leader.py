@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcode.dialects import Dialect
 from gcode.errors import GcodeError, Place
-from gcode.language.parse import parse_line
+from gcode.language.block_parser import parse_line
 from gcode.language.program import Program, Spot
 
 #: A percent sign that ends a leader is looked for in so many lines.

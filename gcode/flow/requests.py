@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from gcode.control.modal import Command
+from gcode.control.command import Command
 from gcode.control.state import State
 from gcode.language.blocks import ParsedBlock, Word
 from gcode.phases.modes import Action, Result, whole_number

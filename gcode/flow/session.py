@@ -13,8 +13,8 @@ from gcode.errors import Call, GcodeError, Place
 from gcode.events import Event
 from gcode.flow.call_stack import Level
 from gcode.flow.library import Library
+from gcode.language.block_parser import parse_blocks
 from gcode.language.blocks import ParsedBlock
-from gcode.language.parse import parse_blocks
 from gcode.language.program import Program, Spot
 from gcode.settings import MachineSettings
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from gcode.control.modal import Command, resolve
+from gcode.control.command import Command, resolve
 from gcode.control.state import State
 from gcode.events import Block, Event, Notice, ProgramStop
 from gcode.flow.requests import CALL_ACTIONS
@@ -14,9 +14,9 @@ from gcode.language.blocks import ParsedBlock
 from gcode.phases.cutter_compensation import RADIUS_ACTIONS, through
 from gcode.phases.g10 import DATA_ACTIONS
 from gcode.phases.modes import ACTIONS, Action, not_negative, whole_number
-from gcode.phases.motion import MOTION_ACTIONS
+from gcode.phases.motions import MOTION_ACTIONS
 from gcode.phases.offsets import OFFSET_ACTIONS
-from gcode.phases.transforms import TURNING_ACTIONS
+from gcode.phases.transforms import TRANSFORM_ACTIONS
 
 #: All phases of a block by name: what `Dialect.order` puts in order.
 PHASES: Mapping[str, Action] = MappingProxyType(
@@ -24,7 +24,7 @@ PHASES: Mapping[str, Action] = MappingProxyType(
         **ACTIONS,
         **OFFSET_ACTIONS,
         **DATA_ACTIONS,
-        **TURNING_ACTIONS,
+        **TRANSFORM_ACTIONS,
         **RADIUS_ACTIONS,
         **MOTION_ACTIONS,
         **CALL_ACTIONS,

@@ -44,12 +44,12 @@ _GROUPS: Mapping[int, Callable[[State], float]] = {
     8: lambda s: _code(s.modes.length_code),
     9: lambda s: 80.0 if s.modes.motion == s.modes.base_motion else _code(s.modes.motion),
     10: lambda s: 99.0 if s.modes.return_to_r else 98.0,
-    11: lambda s: 51.0 if "scaling" in s.modes.turnings else 50.0,
+    11: lambda s: 51.0 if "scaling" in s.modes.transforms else 50.0,
     13: lambda s: 97.0 if s.modes.surface_speed is None else 96.0,
     14: _wcs_code,
-    16: lambda s: 68.0 if "rotation" in s.modes.turnings else 69.0,
+    16: lambda s: 68.0 if "rotation" in s.modes.transforms else 69.0,
     17: lambda s: 16.0 if s.modes.polar else 15.0,
-    22: lambda s: 51.1 if "mirror" in s.modes.turnings else 50.1,
+    22: lambda s: 51.1 if "mirror" in s.modes.transforms else 50.1,
 }
 #: FANUC's #4101...: the value of each modal letter.
 _LETTERS: Mapping[int, Callable[[State], float | None]] = {

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from gcode.errors import GcodeError, Place
-from gcode.language.parse import MAX_LINE
+from gcode.language.block_parser import MAX_LINE
 
 #: Largest file that is read; no control takes a tenth of it.
 MAX_BYTES = 1 << 30

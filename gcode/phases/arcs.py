@@ -11,15 +11,15 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from gcode.control.coordinates import SAME_PLACE_MM
-from gcode.control.modal import Command
+from gcode.control.command import Command
+from gcode.control.coordinates import SAME_POSITION_MM
 from gcode.control.state import State
 from gcode.dialects import ArcTolerance
 from gcode.errors import GcodeError
 from gcode.events import PLANE_AXES, ArcMotion, Point
 from gcode.language.blocks import Word
+from gcode.phases.end_points import extra_end, feed_mm_min, moved_to, program_end, programmed_end, settled
 from gcode.phases.modes import Result, whole_number
-from gcode.phases.targets import extra_end, feed_mm_min, moved_to, program_end, programmed_end, settled
 
 _CENTRE_LETTERS = "IJK"
 _TURNS: Mapping[str, int] = {"G2": -1, "G3": 1}
@@ -132,7 +132,7 @@ def arc_lengths(event: ArcMotion) -> tuple[float, float]:
 def _closed(state: State, ends: _Ends) -> _Ends:
     """The end put exactly over the start where rounding alone parts them: then the arc is a full turn, not none."""
     first, second, _ = PLANE_AXES[state.machine.plane]
-    if math.hypot(ends.end[first] - ends.start[first], ends.end[second] - ends.start[second]) > SAME_PLACE_MM:
+    if math.hypot(ends.end[first] - ends.start[first], ends.end[second] - ends.start[second]) > SAME_POSITION_MM:
         return ends
     return replace(ends, end=_over(state, ends.start, ends.end), closed=True)
 
@@ -158,7 +158,7 @@ def _centre_from_words(state: State, command: Command, ends: _Ends, words: Mappi
         raise command.block.error(next(iter(words.values())), "arc-centre-incomplete", problem, expected)
     centre = _centre(state, ends, words, absolute=state.modes.absolute_centres)
     radii = _radii(state, ends, centre)
-    if max(radii) <= SAME_PLACE_MM:
+    if max(radii) <= SAME_POSITION_MM:
         raise command.block.error(None, "arc-zero-radius", "an arc of radius 0", "a centre away from the start")
     if not _tolerance(state).accepts(*radii):
         raise _radius_error(state, command, ends, words, radii)
@@ -197,7 +197,7 @@ def _radius_error(
     )
     alternative = _radii(state, ends, _centre(state, ends, words, absolute=not state.modes.absolute_centres))
     expected = f"radii within {_tolerance(state).absolute_mm:g} mm of each other"
-    if _tolerance(state).accepts(*alternative) and min(alternative) > SAME_PLACE_MM:
+    if _tolerance(state).accepts(*alternative) and min(alternative) > SAME_POSITION_MM:
         switch = "G91.1" if state.modes.absolute_centres else "G90.1"
         expected += f"; {other} arc centres ({switch}, or the setting arc_centres) would fit"
     return command.block.error(next(iter(words.values())), "arc-radius", problem, expected)
@@ -218,7 +218,7 @@ def _centre_from_radius(state: State, command: Command, ends: _Ends, word: Word)
     start, end, radius = ends.start, ends.end, word.value * state.modes.unit_mm
     along, across = end[first] - start[first], end[second] - start[second]
     chord = math.hypot(along, across)
-    if chord <= SAME_PLACE_MM:
+    if chord <= SAME_POSITION_MM:
         problem = f"{word.text} with the end of the arc at its start"
         raise command.block.error(word, "arc-no-chord", problem, "a centre by I, J, K for a full circle")
     if chord / 2.0 - abs(radius) > state.control.dialect.radius_tolerance_mm:

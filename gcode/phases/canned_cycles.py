@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from types import MappingProxyType
 
-from gcode.control.modal import Command
-from gcode.control.state import AXES, State, same_place
+from gcode.control.command import Command
+from gcode.control.state import AXES, State, same_position
 from gcode.cycles import (
     CycleError,
     CycleInput,
@@ -21,9 +21,9 @@ from gcode.cycles import (
     run_cycle,
 )
 from gcode.events import PLANE_AXES, Dwell, Event, Point, ProgramStop
+from gcode.phases.end_points import program_end
 from gcode.phases.modes import Result, spindle_event
-from gcode.phases.straight import straight
-from gcode.phases.targets import program_end
+from gcode.phases.straight_motion import straight
 
 #: Letters of a cycle that are lengths.
 _LENGTHS = frozenset("XYZRQIJK")
@@ -62,7 +62,7 @@ def drill(state: State, command: Command) -> Result:
         state, more = _execute(state, command, rules, step)
         events.extend(more)
     end = state.frame.to_machine(_point(state, output.position))
-    if not same_place(end, state.position_mm):
+    if not same_position(end, state.position_mm):
         state = replace(state, position_mm=end)
     return state, tuple(events)
 

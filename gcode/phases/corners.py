@@ -9,8 +9,8 @@ from typing import TypeAlias
 
 from gcode.compensation.planar import (
     SAME_POINT_MM,
-    Frame,
     Segment,
+    WorkingPlane,
     circle_circle,
     cross,
     dot,
@@ -56,7 +56,7 @@ def insert_corner(first: Motion, second: Motion, kind: CornerKind, size_mm: floa
     """
     if not (math.isfinite(size_mm) and size_mm > 0.0):
         raise _error(first, "corner-size", f"{_WORDS[kind]}{size_mm:g}", "a length above 0")
-    frame = Frame(plane=first.state.plane)
+    frame = WorkingPlane(plane=first.state.plane)
     before, after = _segment(frame, first, first, kind), _segment(frame, second, first, kind)
     if kind == "chamfer" and (before.centre is not None or after.centre is not None):
         raise _error(first, "corner-arc-chamfer", ",C at an arc", "G1 before and after it, or ,R")
@@ -74,7 +74,7 @@ def insert_corner(first: Motion, second: Motion, kind: CornerKind, size_mm: floa
     return shortened[0], joint, shortened[1]
 
 
-def _segment(frame: Frame, motion: Motion, first: Motion, kind: CornerKind) -> Segment:
+def _segment(frame: WorkingPlane, motion: Motion, first: Motion, kind: CornerKind) -> Segment:
     """`motion` seen in the plane, once it is known to be one that a corner can stand beside."""
     word = _WORDS[kind]
     if motion.state.plane != frame.plane:

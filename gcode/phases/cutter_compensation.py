@@ -9,9 +9,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import gcode.compensation as compensation
+from gcode.control.command import Command
 from gcode.control.coordinates import difference, plus
-from gcode.control.modal import Command
-from gcode.control.state import State, same_place
+from gcode.control.state import State, same_position
 from gcode.control.waiting import CornerKind, WaitingCorner, WaitingPath
 from gcode.errors import GcodeError, Place
 from gcode.events import PLANE_AXES, ArcMotion, Event, LinearMotion, Motion, Notice, Point, ProgramStop
@@ -121,7 +121,7 @@ def _off(state: State, command: Command) -> Result:
     if "motion" in command.phases:
         return replace(state, waiting=replace(path, cancelling=True)), ()
     events, at = compensation.end(path.compensation)
-    beside = None if same_place(at, state.position_mm) else at
+    beside = None if same_position(at, state.position_mm) else at
     return _with_waiting(state, replace(path, compensation=None, cancelling=False, at_mm=beside)), events
 
 
@@ -219,7 +219,7 @@ def _compensated(state: State, event: Event) -> tuple[State, tuple[Event, ...]]:
     if path.cancelling:
         events = compensation.cancel(path.compensation, event)
         at = _last_end(events, event.end_mm)
-        beside = None if same_place(at, event.end_mm) else at
+        beside = None if same_position(at, event.end_mm) else at
         return _with_waiting(state, replace(path, compensation=None, cancelling=False, at_mm=beside)), events
     changed, events = compensation.move(path.compensation, event)
     return replace(state, waiting=replace(path, compensation=changed)), events

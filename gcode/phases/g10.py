@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from gcode.control.coordinates import ORIGIN, Frame, difference, plus
-from gcode.control.modal import Command
+from gcode.control.command import Command
+from gcode.control.coordinates import ORIGIN, CoordinateFrame, difference, plus
 from gcode.control.state import EXTRA_AXES, State, WorkOffset
 from gcode.events import NO_EXTRA, Event, Notice, Point
 from gcode.language.blocks import ParsedBlock
@@ -162,7 +162,7 @@ def _set_tool_row_at_fixture(state: State, command: Command) -> Result:
     return _row_from_position(state, command, fixture.with_setup(shift_on=False).frame)
 
 
-def _row_from_position(state: State, command: Command, frame: Frame) -> Result:
+def _row_from_position(state: State, command: Command, frame: CoordinateFrame) -> Result:
     number, row = _known_row(state, command)
     gauge = state.gauge_mm
     believed = frame.to_program(difference(gauge, (row.x_mm, row.y_mm, row.length_mm)))

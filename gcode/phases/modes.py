@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Literal, TypeAlias
 
-from gcode.control.modal import Command
+from gcode.control.command import Command
 from gcode.control.state import MM_PER_INCH, State
 from gcode.events import CoolantChange, Dwell, Event, FeedMode, Notice, ProgramStop, SpindleChange, ToolChange
 from gcode.language.blocks import ParsedBlock, Word

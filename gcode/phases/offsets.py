@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from gcode.control.command import Command
 from gcode.control.coordinates import ORIGIN, difference, plus
-from gcode.control.modal import Command
 from gcode.control.state import AXES, EXTRA_AXES, State, WorkOffset
 from gcode.events import Event, Extra, Notice, Point
 from gcode.language.blocks import Word

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from gcode.control.coordinates import SAME_PLACE_MM
-from gcode.control.modal import Command
+from gcode.control.command import Command
+from gcode.control.coordinates import SAME_POSITION_MM
 from gcode.control.state import State
 from gcode.language.blocks import Word
 
@@ -49,7 +49,7 @@ def _target(state: State, command: Command, first: Word) -> tuple[float, float]:
     here_x, here_y, _ = (coordinate / modes.unit_mm for coordinate in state.program_mm)
     distance, angle = math.hypot(here_x, here_y), math.degrees(math.atan2(here_y, here_x))
     given_distance, given_angle = (command.words.get(letter) for letter in POLAR_LETTERS)
-    if distance * modes.unit_mm <= SAME_PLACE_MM and (given_angle is None or not modes.absolute):
+    if distance * modes.unit_mm <= SAME_POSITION_MM and (given_angle is None or not modes.absolute):
         problem = f"{first.text} where the tool is at X0 Y0, which has no angle"
         raise command.block.error(first, "polar-words", problem, "@ and ^ with G90, or a start elsewhere")
     if given_distance:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from gcode.control.modal import Command
+from gcode.control.command import Command
 from gcode.control.state import State
 from gcode.events import Event, Point
 from gcode.language.blocks import Word
+from gcode.phases.end_points import program_end, require_axes
 from gcode.phases.modes import Result
-from gcode.phases.straight import straight
-from gcode.phases.targets import program_end, require_axes
+from gcode.phases.straight_motion import straight
 
 #: A control runs a curve as short straight motions; as many as LinuxCNC takes.
 CURVE_PIECES = 100

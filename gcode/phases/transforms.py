@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from gcode.control.coordinates import Turning, rotation, scaling
-from gcode.control.modal import Command, Use
-from gcode.control.state import AXES, TURNING_ORDER, State
+from gcode.control.command import Command, Use
+from gcode.control.coordinates import Transform, rotation, scaling
+from gcode.control.state import AXES, TRANSFORM_ORDER, State
 from gcode.events import PLANE_AXES, Point
 from gcode.phases.modes import Action, Result
 
@@ -16,16 +16,16 @@ _SCALE_UNIT = 0.001
 _NAME_OF_CODE: Mapping[str, str] = {"G50": "scaling", "G50.1": "mirror", "G69": "rotation"}
 
 
-def set_turning(state: State, command: Command) -> Result:
+def set_transform(state: State, command: Command) -> Result:
     """Codes that turn, scale, mirror or bend program coordinates."""
-    for use in command.of_phase("turning"):
+    for use in command.of_phase("transform"):
         state = _SETTERS[use.rule.code](state, command, use)
     return state, ()
 
 
-def clear_turning(state: State, command: Command) -> Result:
+def clear_transform(state: State, command: Command) -> Result:
     """Codes that end it."""
-    for use in command.of_phase("turning_off"):
+    for use in command.of_phase("transform_off"):
         if use.rule.code == "G15":
             state = state.with_modes(polar=False, polar_centre_mm=None)
             continue
@@ -37,13 +37,13 @@ def clear_turning(state: State, command: Command) -> Result:
     return state, ()
 
 
-def _with(state: State, name: str, turning: Turning | None) -> State:
-    turnings = {key: value for key, value in state.modes.turnings.items() if key != name}
-    if turning is not None:
-        turnings[name] = turning
-    if turnings == state.modes.turnings:
+def _with(state: State, name: str, transform: Transform | None) -> State:
+    transforms = {key: value for key, value in state.modes.transforms.items() if key != name}
+    if transform is not None:
+        transforms[name] = transform
+    if transforms == state.modes.transforms:
         return state
-    return state.with_modes(turnings=MappingProxyType(turnings)).reframed()
+    return state.with_modes(transforms=MappingProxyType(transforms)).reframed()
 
 
 def _centre(state: State, command: Command, name: str) -> Point:
@@ -56,9 +56,9 @@ def _centre(state: State, command: Command, name: str) -> Point:
         words[axis].value * modes.unit_mm if axis in words else old for axis, old in zip(AXES, here, strict=True)
     )
     centre = (x, y, z)
-    for before in TURNING_ORDER[: TURNING_ORDER.index(name)]:
-        if before in modes.turnings:
-            centre = modes.turnings[before].of(centre)
+    for before in TRANSFORM_ORDER[: TRANSFORM_ORDER.index(name)]:
+        if before in modes.transforms:
+            centre = modes.transforms[before].of(centre)
     return centre
 
 
@@ -107,10 +107,10 @@ def _factor(command: Command, letter: str) -> float:
 
 
 def _mirrored(state: State) -> set[str]:
-    turning = state.modes.turnings.get("mirror")
-    if turning is None:
+    transform = state.modes.transforms.get("mirror")
+    if transform is None:
         return set()
-    return {axis for index, axis in enumerate(AXES) if turning.matrix[index][index] < 0.0}
+    return {axis for index, axis in enumerate(AXES) if transform.matrix[index][index] < 0.0}
 
 
 def _mirror(state: State, command: Command, use: Use) -> State:
@@ -125,7 +125,7 @@ def _mirror(state: State, command: Command, use: Use) -> State:
 def _with_mirror(state: State, axes: set[str], centre: Point | None, named: set[str] | None = None) -> State:
     if not axes:
         return _with(state, "mirror", None)
-    old = state.modes.turnings.get("mirror")
+    old = state.modes.transforms.get("mirror")
     x, y, z = (
         centre[i] if centre is not None and named is not None and axis in named else old.centre_mm[i] if old else 0.0
         for i, axis in enumerate(AXES)
@@ -146,4 +146,4 @@ _SETTERS: Mapping[str, Callable[[State, Command, Use], State]] = {
     "G51.1": _mirror,
     "G16": _polar,
 }
-TURNING_ACTIONS: Mapping[str, Action] = {"turning": set_turning, "turning_off": clear_turning}
+TRANSFORM_ACTIONS: Mapping[str, Action] = {"transform": set_transform, "transform_off": clear_transform}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +14,7 @@ from gcode.bulk.plain_runs import PlainBatch
 from gcode.dialects import FANUC, Dialect
 from gcode.errors import GcodeError
 from gcode.events import NO_EXTRA, ArcMotion, Dwell, Event, Extra, LinearMotion, MotionState, Point
-from gcode.flow.interpret import Text, read_program, run
+from gcode.flow.interpreter import ProgramSource, run
 from gcode.settings import MachineSettings
 
 #: Most motions of one `MotionArrays`, where nothing else is said.
@@ -23,8 +22,8 @@ ROWS = 65_536
 _NO_CENTRE: Point = (np.nan, np.nan, np.nan)
 
 
-class Kind(IntEnum):
-    """What a motion is."""
+class MotionKind(IntEnum):
+    """Kind of a motion, as the arrays hold it."""
 
     RAPID = 0
     FEED = 1
@@ -40,7 +39,7 @@ class MotionArrays:
     Points are the controlled point in machine coordinates, mm.
 
     Attributes:
-        kind: (n,) members of `Kind`.
+        kind: (n,) members of `MotionKind`.
         line: (n,) line of the block that moves, counted from 1.
         start_mm: (n, 3) where each begins.
         end_mm: (n, 3) where each ends. A dwell is where the last motion ended.
@@ -120,19 +119,19 @@ _COLUMNS: dict[str, tuple[type[np.generic], tuple[int, ...]]] = {
 
 
 def motion_arrays(
-    source: Text | Path,
+    source: ProgramSource,
     *,
     file: str = "<program>",
-    dialect: Dialect = FANUC,
+    dialect: Dialect | str = FANUC,
     settings: MachineSettings | None = None,
     rows: int = ROWS,
 ) -> Iterator[MotionArrays]:
     """Runs a program into arrays. Memory does not grow with the program's length.
 
     Args:
-        source: the program's text, its lines, a program read, or the path of its file.
-        file: name for places in errors; that of a file is its own.
-        dialect: the control whose language the program is in.
+        source: the program's text, its lines, the path of its file (a `Path`), or the result of `read_program`.
+        file: name of a text in errors; a file is named by its path.
+        dialect: the control whose language the program is in, or its name: ``"haas"``.
         settings: the machine at the program's start; default `MachineSettings()`.
         rows: motions in each of the arrays but the last, at least 1.
 
@@ -141,15 +140,14 @@ def motion_arrays(
 
     Raises:
         GcodeError: at the first block that is refused; the motions before it have been yielded.
-        ValueError: for `rows` below 1.
+        ValueError: for `rows` below 1, and for an unknown name of a dialect.
     """
     if rows < 1:
         raise ValueError(f"rows must be 1 or more, got {rows}")
     settings = settings or MachineSettings()
-    program = read_program(source) if isinstance(source, Path) else source
     collector = _Collector(rows, settings.start_mm)
     try:
-        for event in run(program, file=file, dialect=dialect, settings=settings):
+        for event in run(source, file=file, dialect=dialect, settings=settings):
             collector.take(event)
             yield from collector.full()
     except GcodeError:
@@ -186,7 +184,7 @@ def _joined(parts: Sequence[tuple[NDArray[np.int32], tuple[Any, ...]]]) -> tuple
 class _Row(NamedTuple):
     """One motion, in the order of `_COLUMNS`."""
 
-    kind: Kind
+    kind: MotionKind
     line: int
     start_mm: Point
     end_mm: Point
@@ -250,14 +248,14 @@ class _Collector:
     def _row(self, event: LinearMotion | ArcMotion | Dwell) -> _Row:
         start, arc, feed, seconds = self._at, (_NO_CENTRE, 0, 0), 0.0, 0.0
         if isinstance(event, Dwell):
-            kind, seconds = Kind.DWELL, event.seconds
+            kind, seconds = MotionKind.DWELL, event.seconds
         else:
             start, self._at, self._extra, feed = event.start_mm, event.end_mm, event.extra, event.feed_mm_min
-            kind = Kind.ARC
+            kind = MotionKind.ARC
             if isinstance(event, ArcMotion):
                 arc = (event.centre_mm, event.plane, event.turns)
             else:
-                kind = Kind.RAPID if event.rapid else Kind.TAP if event.tapping else Kind.FEED
+                kind = MotionKind.RAPID if event.rapid else MotionKind.TAP if event.tapping else MotionKind.FEED
         state = self._states.setdefault(event.state, len(self._states))
         file = self._files.setdefault(event.place.file, len(self._files))
         return _Row(kind, event.place.line, start, self._at, *arc, feed, seconds, self._extra, state, file)
@@ -277,7 +275,7 @@ def _of_batch(batch: PlainBatch) -> MotionArrays:
     run = batch.run
     count = len(run.line)
     columns: dict[str, Any] = {name: np.zeros((count, *shape), kind) for name, (kind, shape) in _COLUMNS.items()}
-    columns["kind"] = np.where(run.rapid, Kind.RAPID, Kind.FEED).astype(np.uint8)
+    columns["kind"] = np.where(run.rapid, MotionKind.RAPID, MotionKind.FEED).astype(np.uint8)
     columns["line"], columns["end_mm"], columns["feed_mm_min"] = run.line, run.end_mm, run.feed_mm_min
     columns["start_mm"] = np.concatenate([[batch.start.position_mm], run.end_mm[:-1]])
     columns["centre_mm"].fill(np.nan)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcode.events import ArcMotion, Event, LinearMotion
-from gcode.report.path import points_mm
+from gcode.report.path_geometry import points_mm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

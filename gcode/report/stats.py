@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from gcode.events import ArcMotion, Block, Dwell, Event, LinearMotion, Motion, MotionState, Notice, Point, ToolChange
 from gcode.report.motion_json import type_of
-from gcode.report.path import extremes_mm, length_mm
+from gcode.report.path_geometry import extremes_mm, length_mm
 
 #: Rate of positioning motions where none is given, mm/min.
 RAPID_MM_MIN = 10_000.0
@@ -34,7 +34,7 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Values:
+class ValueSet:
     """Different values of a feed or a speed.
 
     Attributes:
@@ -49,7 +49,7 @@ class Values:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Sums:
+class MotionTotals:
     """Lengths in mm and times in s of one tool, or of a whole program.
 
     Attributes:
@@ -69,8 +69,8 @@ class Sums:
     rapid_s: float
     dwell_s: float
     motions: Mapping[str, int]
-    feeds_mm_min: Values | None
-    speeds_rpm: Values | None
+    feeds_mm_min: ValueSet | None
+    speeds_rpm: ValueSet | None
 
     @property
     def travel_mm(self) -> float:
@@ -99,8 +99,8 @@ class ProgramStats:
         rapid_mm_min: rate of positioning motions that the times are for.
     """
 
-    total: Sums
-    tools: Mapping[int, Sums]
+    total: MotionTotals
+    tools: Mapping[int, MotionTotals]
     cutting_box: Box | None
     box: Box | None
     blocks: int
@@ -147,11 +147,11 @@ class _Collected:
         else:
             self.many = True
 
-    def done(self) -> Values | None:
+    def done(self) -> ValueSet | None:
         if not self.values:
             return None
         each = None if self.many else tuple(sorted(self.values))
-        return Values(least=self.least, largest=self.largest, each=each)
+        return ValueSet(least=self.least, largest=self.largest, each=each)
 
 
 @dataclass(slots=True)
@@ -170,7 +170,7 @@ class _Extent:
 
 @dataclass(slots=True)
 class _Sums:
-    """`Sums` while they grow."""
+    """`MotionTotals` while they grow."""
 
     cutting_mm: float = 0.0
     rapid_mm: float = 0.0
@@ -193,8 +193,8 @@ class _Sums:
         if state.spindle_direction:
             self.speeds.add(state.spindle_rpm)
 
-    def done(self) -> Sums:
-        return Sums(
+    def done(self) -> MotionTotals:
+        return MotionTotals(
             cutting_mm=self.cutting_mm,
             rapid_mm=self.rapid_mm,
             cutting_s=self.cutting_s,

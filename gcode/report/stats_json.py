@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from gcode.report.stats import Box, ProgramStats, Sums, Values
+from gcode.report.stats import Box, MotionTotals, ProgramStats, ValueSet
 
 
 def stats_object(stats: ProgramStats) -> dict[str, Any]:
@@ -22,7 +22,7 @@ def stats_object(stats: ProgramStats) -> dict[str, Any]:
     }
 
 
-def _sums(sums: Sums) -> dict[str, Any]:
+def _sums(sums: MotionTotals) -> dict[str, Any]:
     return {
         "travel_mm": sums.travel_mm,
         "cutting_mm": sums.cutting_mm,
@@ -37,7 +37,7 @@ def _sums(sums: Sums) -> dict[str, Any]:
     }
 
 
-def _values(values: Values | None) -> dict[str, Any] | None:
+def _values(values: ValueSet | None) -> dict[str, Any] | None:
     if values is None:
         return None
     each = None if values.each is None else list(values.each)

@@ -11,7 +11,7 @@ All of them refuse a file with one `gcode.errors.GcodeError` that names file, li
 expected.
 """
 
-from gcode.tables.parameters import ParameterFile, read_parameters
+from gcode.tables.parameter_file import ParameterFile, read_parameters
 from gcode.tables.settings_file import read_settings
 from gcode.tables.tool_table import read_tool_table
 

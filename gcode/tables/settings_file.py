@@ -26,8 +26,8 @@ from typing import Any
 
 from gcode.events import Point
 from gcode.settings import ALL_OFFSETS, Limits, MachineSettings, ToolOffset
-from gcode.tables.document import Node, load_document
 from gcode.tables.text_file import read_text
+from gcode.tables.toml_document import Node, load_document
 
 _ADDITIONAL = re.compile(r"(G54\.1)\s*(P\d+)")
 

@@ -14,9 +14,9 @@ from types import MappingProxyType
 
 from gcode.errors import Place
 from gcode.settings import ToolOffset
-from gcode.tables.document import load_document
 from gcode.tables.settings_file import tools_of
 from gcode.tables.text_file import MM_PER_UNIT, Unit, error_at, lines_of, number_at, read_text, token_at
+from gcode.tables.toml_document import load_document
 
 #: Field of `ToolOffset` that a word of a row gives, and what its number is multiplied by beside the unit.
 _FIELDS: Mapping[str, tuple[str, float]] = MappingProxyType(

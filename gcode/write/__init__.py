@@ -1,7 +1,8 @@
-"""Events -> NC programs: the way back from what `gcode.flow.interpret` yields, and the way out for tool paths."""
+"""Events -> NC programs: the reverse of the interpreter, and the output of tool paths."""
 
 from gcode.write.errors import WriteError
 from gcode.write.options import WriteOptions
-from gcode.write.program import program_lines, write_file
+from gcode.write.program import program_lines, write_program
+from gcode.write.rewriting import rewrite
 
-__all__ = ["WriteError", "WriteOptions", "program_lines", "write_file"]
+__all__ = ["WriteError", "WriteOptions", "program_lines", "rewrite", "write_program"]

@@ -41,7 +41,7 @@ class Grid:
         x, y, z = (self.count(value - zero) for value, zero in zip(point_mm, self.zero_mm, strict=True))
         return (x, y, z)
 
-    def place_mm(self, counts: Counts) -> Point:
+    def position_mm(self, counts: Counts) -> Point:
         """A point of the grid in machine coordinates."""
         x, y, z = (count * self.step_mm + zero for count, zero in zip(counts, self.zero_mm, strict=True))
         return (x, y, z)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal
 
 from gcode.dialects import FANUC, Dialect
 from gcode.events import Point
-from gcode.settings import ALL_OFFSETS, ToolOffset
+from gcode.settings import ALL_OFFSETS, MachineSettings, ToolOffset
 from gcode.write.numbers import MM_PER_INCH, Grid
-from gcode.write.rules import RULES, OutputRules
+from gcode.write.output_rules import RULES, OutputRules
 
 #: More decimals than these are finer than what two places are told apart by.
 MOST_DECIMALS = 6
@@ -99,6 +99,12 @@ class WriteOptions:
         offsets = [code for code, rule in self.dialect.codes.items() if "work-offset" in rule.groups]
         if self.wcs is not None and (self.wcs not in ALL_OFFSETS or self.wcs.partition(" ")[0] not in offsets):
             raise ValueError(f"wcs must be one of {', '.join(offsets)}, got {self.wcs!r}")
+
+    def for_machine(self, settings: MachineSettings) -> WriteOptions:
+        """These options with the zero of work offset `wcs`, the tool table and the tool of a machine."""
+        x, y, z = settings.offsets.get(self.wcs or "", (0.0, 0.0, 0.0))
+        dx, dy, dz = settings.external_offset_mm
+        return replace(self, shift_mm=(x + dx, y + dy, z + dz), tools=settings.tools, tool=settings.tool)
 
     @property
     def rules(self) -> OutputRules:

@@ -17,9 +17,9 @@ from gcode.events import (
     SpindleChange,
     ToolChange,
 )
-from gcode.write.control import Control, Stream
-from gcode.write.machine import coolant, dwell, spindle_change, stop, tool_change
-from gcode.write.moves import motion
+from gcode.write.control_memory import ControlMemory, EventStream
+from gcode.write.machine_functions import coolant, dwell, spindle_change, stop, tool_change
+from gcode.write.motions import motion
 from gcode.write.options import WriteOptions
 
 
@@ -45,8 +45,8 @@ def program_lines(events: Iterable[Event], options: WriteOptions | None = None) 
         WriteError: at the first event that cannot be said; the lines before it have been yielded.
     """
     options = options or WriteOptions()
-    control = Control(options, options.grid, options.tool)
-    stream = Stream(iter(enumerate(events)))
+    control = ControlMemory(options, options.grid, options.tool)
+    stream = EventStream(iter(enumerate(events)))
     yield from _beginning(control)
     while (item := stream.take()) is not None:
         control.index, event = item
@@ -54,7 +54,7 @@ def program_lines(events: Iterable[Event], options: WriteOptions | None = None) 
     yield from _ending(control)
 
 
-def write_file(path: Path | str, events: Iterable[Event], options: WriteOptions | None = None) -> int:
+def write_program(path: Path | str, events: Iterable[Event], options: WriteOptions | None = None) -> int:
     """Writes a program file, whole or not at all: what is there already stays until the new one is complete.
 
     Returns:
@@ -78,7 +78,7 @@ def write_file(path: Path | str, events: Iterable[Event], options: WriteOptions 
     return lines
 
 
-def _beginning(control: Control) -> Iterator[str]:
+def _beginning(control: ControlMemory) -> Iterator[str]:
     options, rules = control.options, control.options.rules
     if options.with_percent:
         yield "%"
@@ -93,14 +93,14 @@ def _beginning(control: Control) -> Iterator[str]:
     yield control.line("G20" if options.units == "inch" else "G21", modes, *([options.wcs] if options.wcs else []))
 
 
-def _ending(control: Control) -> Iterator[str]:
+def _ending(control: ControlMemory) -> Iterator[str]:
     if not control.ended:
         yield control.line("M30")
     if control.options.with_percent:
         yield "%"
 
 
-def _blocks(control: Control, event: Event, stream: Stream) -> Iterator[str]:
+def _blocks(control: ControlMemory, event: Event, stream: EventStream) -> Iterator[str]:
     if control.ended and not isinstance(event, Block | Notice):
         raise control.error(event, "after-end", "an event behind the program's end", "the end as the last event")
     if isinstance(event, LinearMotion | ArcMotion):

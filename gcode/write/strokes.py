@@ -10,7 +10,7 @@ from typing import TypeAlias
 from gcode.dialects import Dialect
 from gcode.events import PLANE_AXES, ArcMotion, Point
 from gcode.phases.arcs import arc_lengths
-from gcode.report.path import points_mm
+from gcode.report.path_geometry import points_mm
 from gcode.write.numbers import Counts, Grid
 
 #: A circle whose radius is less, in counts, is no circle any more once its centre and ends are rounded.

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from gcode.events import PLANE_AXES, Block, Dwell, Event, LinearMotion, Notice, SpindleChange
-from gcode.write.control import Control, Stream
+from gcode.write.control_memory import ControlMemory, EventStream
 from gcode.write.errors import WriteError
-from gcode.write.machine import pause
+from gcode.write.machine_functions import pause
 from gcode.write.numbers import Counts, plain
 
 _CYCLES: Mapping[int, str] = {1: "G84", -1: "G74"}
@@ -31,7 +31,7 @@ class Tap:
     rigid: bool
 
 
-def tap_of(control: Control, event: LinearMotion, stream: Stream) -> Tap:
+def tap_of(control: ControlMemory, event: LinearMotion, stream: EventStream) -> Tap:
     """Takes the rest of a tap from the stream.
 
     Raises:
@@ -51,12 +51,12 @@ def tap_of(control: Control, event: LinearMotion, stream: Stream) -> Tap:
     raise _error(control, event, "a stroke into a thread", "the stroke out of it, back to its start, behind it")
 
 
-def _is_back(control: Control, into: LinearMotion, out: LinearMotion) -> bool:
+def _is_back(control: ControlMemory, into: LinearMotion, out: LinearMotion) -> bool:
     place = control.grid.point
     return place(out.start_mm) == place(into.end_mm) and place(out.end_mm) == place(into.start_mm)
 
 
-def _stands(stream: Stream, seconds: float) -> bool:
+def _stands(stream: EventStream, seconds: float) -> bool:
     """True where the spindle stops behind a tap; the second dwell of the cycle is taken from the stream."""
     taken: list[tuple[int, Event]] = []
     while (item := stream.take()) is not None and isinstance(item[1], Block | Notice | Dwell):
@@ -70,7 +70,7 @@ def _stands(stream: Stream, seconds: float) -> bool:
     return item is not None and isinstance(item[1], SpindleChange) and item[1].spindle_direction == 0
 
 
-def tap_blocks(control: Control, event: LinearMotion, tap: Tap, feed: str) -> Iterator[str]:
+def tap_blocks(control: ControlMemory, event: LinearMotion, tap: Tap, feed: str) -> Iterator[str]:
     """The blocks of a tap.
 
     Raises:
@@ -85,7 +85,7 @@ def tap_blocks(control: Control, event: LinearMotion, tap: Tap, feed: str) -> It
     control.at_mm, control.unsure = event.start_mm, False
 
 
-def _cycle(control: Control, event: LinearMotion, tap: Tap, feed: str) -> Iterator[str]:
+def _cycle(control: ControlMemory, event: LinearMotion, tap: Tap, feed: str) -> Iterator[str]:
     """G84 or G74, with its R where the tool is."""
     _, _, k = PLANE_AXES[event.state.plane]
     start, end = _ends(control, event)
@@ -108,7 +108,7 @@ def _cycle(control: Control, event: LinearMotion, tap: Tap, feed: str) -> Iterat
         control.direction = 0
 
 
-def _stroke(control: Control, event: LinearMotion, tap: Tap, _feed: str) -> Iterator[str]:
+def _stroke(control: ControlMemory, event: LinearMotion, tap: Tap, _feed: str) -> Iterator[str]:
     """G33.1."""
     if tap.seconds:
         raise _error(control, event, f"a tap with a dwell of {tap.seconds:g} s", "one without, as G33.1 is")
@@ -120,12 +120,12 @@ def _stroke(control: Control, event: LinearMotion, tap: Tap, _feed: str) -> Iter
     yield control.line("G33.1", *words, f"K{plain(pitch, _PITCH_DECIMALS)}")
 
 
-def _ends(control: Control, event: LinearMotion) -> tuple[Counts, Counts]:
+def _ends(control: ControlMemory, event: LinearMotion) -> tuple[Counts, Counts]:
     assert control.at is not None
     return control.at, control.grid.point(event.end_mm)
 
 
-def _error(control: Control, event: LinearMotion, problem: str, expected: str) -> WriteError:
+def _error(control: ControlMemory, event: LinearMotion, problem: str, expected: str) -> WriteError:
     return control.error(event, "tap", problem, expected)
 
 

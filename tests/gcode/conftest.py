@@ -11,7 +11,7 @@ import pytest
 from gcode.dialects import dialect_named
 from gcode.errors import GcodeError
 from gcode.events import PLANE_AXES, ArcMotion, Event, LinearMotion, Motion, Point
-from gcode.flow.interpret import interpret
+from gcode.flow.interpreter import interpret
 from gcode.settings import MachineSettings
 
 Run = Callable[..., list[Event]]

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from gcode.dialects import dialect_named
 from gcode.errors import GcodeError
 from gcode.events import NO_EXTRA, ArcMotion, Dwell, Event, LinearMotion
-from gcode.flow.interpret import interpret
-from gcode.report.motion_arrays import Kind, MotionArrays, concatenate, motion_arrays
+from gcode.flow.interpreter import interpret
+from gcode.report.motion_arrays import MotionArrays, MotionKind, concatenate, motion_arrays
 from gcode.report.motion_json import type_of
 from gcode.settings import MachineSettings
 
@@ -72,7 +72,7 @@ def of_events(events: list[Event], start_mm: tuple[float, float, float]) -> dict
             continue
         state = event.state
         modal = (state.tool, state.spindle_rpm, state.spindle_direction)
-        kind = Kind[type_of(event).upper()]
+        kind = MotionKind[type_of(event).upper()]
         rows.append((kind, event.place.line, start, at, *arc, feed, seconds, extra, *modal))
     return {name: [row[index] for row in rows] for index, name in enumerate(COLUMNS)}
 
@@ -101,7 +101,7 @@ def test_arrays_are_the_events(rows: int) -> None:
     made = concatenate(parts)
     events = list(interpret(PROGRAM, settings=start))
     check(made, of_events(events, start.start_mm))
-    assert set(made.kind) == set(Kind)
+    assert set(made.kind) == set(MotionKind)
     assert {len(part) for part in parts[:-1]} <= {rows}
     assert 0 < len(parts[-1]) <= rows
     states = [e.state for e in events if isinstance(e, LinearMotion | ArcMotion | Dwell)]
@@ -143,7 +143,7 @@ def test_a_path_and_the_files_it_calls(tmp_path: Path) -> None:
 
 def test_a_dwell_is_where_the_last_motion_ended() -> None:
     made = whole("G4 P500\nG0 X1.\nG4 P1000\nM30\n", settings=MachineSettings(start_mm=(7.0, 8.0, 9.0)))
-    assert made.kind.tolist() == [Kind.DWELL, Kind.RAPID, Kind.DWELL]
+    assert made.kind.tolist() == [MotionKind.DWELL, MotionKind.RAPID, MotionKind.DWELL]
     assert made.start_mm.tolist() == [[7, 8, 9], [7, 8, 9], [1, 8, 9]]
     assert made.end_mm.tolist() == [[7, 8, 9], [1, 8, 9], [1, 8, 9]]
     assert made.seconds.tolist() == [0.5, 0, 1]

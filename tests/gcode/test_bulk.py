@@ -17,7 +17,7 @@ from gcode.bulk.plain_words import plain_end, read_words
 from gcode.dialects import dialect_named
 from gcode.errors import Call, GcodeError
 from gcode.events import Block, Event, LinearMotion, MotionState
-from gcode.flow.interpret import interpret, run
+from gcode.flow.interpreter import interpret, run
 from gcode.flow.runner import Runner
 from gcode.language.program import program_of
 from gcode.settings import Limits, MachineSettings

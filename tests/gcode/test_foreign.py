@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gcode.flow.interpret import check
+from gcode.flow.interpreter import check
 from gcode.language.foreign import recognise
 
 FOREIGN = {

@@ -14,7 +14,7 @@ from rich.cells import cell_len
 
 from gcode.cli import run
 from gcode.cli.app import app
-from gcode.cli.machine import DialectName
+from gcode.cli.machine_options import DialectName
 from gcode.dialects import DIALECTS
 
 ROOT = Path(__file__).parents[2]
@@ -310,7 +310,7 @@ def test_a_reader_that_goes_ends_the_command_without_a_word(tmp_path: Path) -> N
 def test_the_help_loads_nothing_heavy() -> None:
     script = (
         "import sys; from gcode.cli import run; code = run(['--help']);"
-        "heavy = {'numpy', 'matplotlib', 'gcode.flow.interpret'} & set(sys.modules); sys.exit(code or bool(heavy))"
+        "heavy = {'numpy', 'matplotlib', 'gcode.flow.interpreter'} & set(sys.modules); sys.exit(code or bool(heavy))"
     )
     done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, check=False)
     assert done.returncode == 0

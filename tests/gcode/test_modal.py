@@ -6,16 +6,15 @@ from collections.abc import Callable
 
 import pytest
 
-from gcode.control.modal import resolve
+from gcode.control.command import resolve
 from gcode.control.state import State, initial_state
 from gcode.dialects import DIALECTS, Dialect, dialect_named
 from gcode.dialects.codes import Status
 from gcode.errors import GcodeError, Place
 from gcode.events import Block, LinearMotion, Notice
-from gcode.flow.interpret import step
-from gcode.flow.step import PHASES
+from gcode.flow.step import PHASES, step
+from gcode.language.block_parser import parse_line
 from gcode.language.blocks import ParsedBlock
-from gcode.language.parse import parse_line
 from gcode.settings import MachineSettings, ToolOffset
 
 ALL = pytest.mark.parametrize("dialect", DIALECTS.values(), ids=DIALECTS.keys())

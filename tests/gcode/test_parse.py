@@ -6,8 +6,8 @@ import pytest
 
 from gcode.dialects import FANUC, GRBL, LINUXCNC
 from gcode.errors import GcodeError, Place
+from gcode.language.block_parser import MAX_LINE, parse_blocks, parse_line
 from gcode.language.blocks import ParsedBlock
-from gcode.language.parse import MAX_LINE, parse_blocks, parse_line
 
 
 def parse(text: str, *, linuxcnc: bool = False, block_delete: bool = False) -> ParsedBlock:

@@ -18,8 +18,8 @@ from gcode.events import (
     SpindleChange,
     ToolChange,
 )
-from gcode.flow.interpret import check, interpret, interpret_file
-from gcode.language.parse import MAX_LINE
+from gcode.flow.interpreter import check, interpret, interpret_file
+from gcode.language.block_parser import MAX_LINE
 from gcode.language.program import read_program
 from gcode.settings import Limits, MachineSettings
 

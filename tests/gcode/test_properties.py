@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from gcode.dialects import DIALECTS
 from gcode.errors import GcodeError
 from gcode.events import PLANE_AXES, ArcMotion, Block, Event, LinearMotion, Point
-from gcode.flow.interpret import check, interpret
+from gcode.flow.interpreter import check, interpret
 from gcode.settings import MachineSettings, ToolOffset
 
 SETTINGS = MachineSettings(tools={1: ToolOffset(length_mm=75.0)}, home_mm=(0.0, 0.0, 400.0), start_mm=(5.0, 5.0, 300.0))

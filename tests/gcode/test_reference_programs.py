@@ -15,7 +15,7 @@ from support.rs274_compare import our_moves, settings_of, timed
 
 from gcode.errors import GcodeError
 from gcode.events import ArcMotion, LinearMotion
-from gcode.flow.interpret import check, interpret_file
+from gcode.flow.interpreter import check, interpret_file
 from gcode.language.program import read_program
 from gcode.settings import MachineSettings, ToolOffset
 

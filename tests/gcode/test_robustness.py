@@ -20,7 +20,7 @@ from gcode.cli import run as command
 from gcode.dialects import DIALECTS, dialect_named
 from gcode.errors import GcodeError
 from gcode.events import Block
-from gcode.flow.interpret import check, interpret, interpret_file
+from gcode.flow.interpreter import check, interpret, interpret_file
 from gcode.language.program import read_program
 from gcode.settings import Limits, MachineSettings
 

@@ -26,7 +26,7 @@ from gcode.events import (
     ToolChange,
 )
 from gcode.report.motion_json import motion_objects
-from gcode.report.path import extremes_mm, length_mm, points_mm
+from gcode.report.path_geometry import extremes_mm, length_mm, points_mm
 from gcode.report.stats import MOST_VALUES, program_stats
 from gcode.report.stats_json import stats_object
 

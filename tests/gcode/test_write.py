@@ -19,10 +19,10 @@ from support.streams import PLACE, START, TOOLS, Path, motions_of, random_stream
 
 from gcode.dialects import DIALECTS, LINUXCNC
 from gcode.events import ArcMotion, CoolantChange, Dwell, Event, LinearMotion, Motion, ProgramStop, SpindleChange
-from gcode.flow.interpret import interpret
-from gcode.report.path import length_mm, points_mm
+from gcode.flow.interpreter import interpret
+from gcode.report.path_geometry import length_mm, points_mm
 from gcode.settings import MachineSettings
-from gcode.write import WriteError, WriteOptions, program_lines, write_file
+from gcode.write import WriteError, WriteOptions, program_lines, write_program
 
 SETTINGS = MachineSettings(tools=TOOLS, start_mm=START)
 MANY_TOOLS = ["fanuc", "haas", "linuxcnc"]
@@ -294,10 +294,10 @@ def test_block_numbers_begin_anew_where_a_control_has_no_more() -> None:
 def test_a_file_is_written_whole_or_not_at_all(tmp_path: File) -> None:
     path = tmp_path / "part.nc"
     good = random_stream(random.Random(3), 20)
-    assert write_file(path, good) == len(path.read_text().splitlines())
+    assert write_program(path, good) == len(path.read_text().splitlines())
     before = path.read_text()
     with pytest.raises(WriteError):
-        write_file(path, [*good, replace(motions_of(good)[0], start_mm=(1e6, 0.0, 0.0))])
+        write_program(path, [*good, replace(motions_of(good)[0], start_mm=(1e6, 0.0, 0.0))])
     assert path.read_text() == before
     assert [file.name for file in tmp_path.iterdir()] == ["part.nc"]
 

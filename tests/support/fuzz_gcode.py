@@ -29,7 +29,7 @@ if __name__ == "__main__":
 from gcode.dialects import DIALECTS, Dialect  # noqa: E402
 from gcode.errors import GcodeError  # noqa: E402
 from gcode.events import ArcMotion, Block, Dwell, Event, LinearMotion  # noqa: E402
-from gcode.flow.interpret import check, interpret  # noqa: E402
+from gcode.flow.interpreter import check, interpret  # noqa: E402
 from gcode.language.program import program_of  # noqa: E402
 from gcode.report.motion_json import motion_objects  # noqa: E402
 from gcode.report.stats import program_stats  # noqa: E402

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from gcode.dialects import LINUXCNC
 from gcode.events import PLANE_AXES, ArcMotion, Dwell, Event, LinearMotion
-from gcode.flow.interpret import interpret, interpret_file
+from gcode.flow.interpreter import interpret, interpret_file
 from gcode.settings import MachineSettings
 from gcode.tables import read_parameters, read_tool_table
 from support.rs274 import ORIGIN, Kind, Move

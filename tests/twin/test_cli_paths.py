@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.small_parts import pocket, prism, prism_corners, write_stl
 
-from gcode.cli.run import run as gcode
+from gcode.cli.entry import run as gcode
 from twin.cli.run import run
 from twin.workpiece.from_mesh import stl_bytes
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from gcode.dialects import dialect_named
 from gcode.events import Event, ToolChange
-from gcode.flow.interpret import interpret
+from gcode.flow.interpreter import interpret
 from gcode.language.program import read_program
 from gcode.settings import MachineSettings, ToolOffset
 from twin.arrays import FloatArray

@@ -8,7 +8,7 @@ import pytest
 
 from gcode.errors import GcodeError
 from gcode.events import LinearMotion, Notice, ProgramStop
-from gcode.flow.interpret import interpret_file
+from gcode.flow.interpreter import interpret_file
 
 STEP = "O1000\nG91 X1.\nG90\nM99"
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.golden_section import underside
 
-from gcode.flow.interpret import interpret
+from gcode.flow.interpreter import interpret
 from twin.arrays import FloatArray
 from twin.cam.path.toolpath import Move as PathMove
 from twin.cam.path.toolpath import MoveKind, ToolPath

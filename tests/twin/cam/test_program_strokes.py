@@ -7,7 +7,7 @@ import pytest
 
 from gcode.dialects import dialect_named
 from gcode.errors import GcodeError
-from gcode.flow.interpret import interpret
+from gcode.flow.interpreter import interpret
 from gcode.settings import ALL_OFFSETS, MachineSettings, ToolOffset
 from twin.cam.stock.dexel import Dexels
 from twin.cam.stock.program_strokes import cut_program

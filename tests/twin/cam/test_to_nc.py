@@ -9,8 +9,8 @@ from support.rs274 import RS274
 
 from gcode.dialects import dialect_named
 from gcode.events import ArcMotion, LinearMotion
-from gcode.flow.interpret import interpret_file
-from gcode.report.path import points_mm
+from gcode.flow.interpreter import interpret_file
+from gcode.report.path_geometry import points_mm
 from gcode.settings import MachineSettings, ToolOffset
 from twin.cam.path.arc_fit import FitOptions, fit_path
 from twin.cam.path.linking import LinkOptions, Pass, link

@@ -28,7 +28,7 @@ from gcode.events import (
     SpindleChange,
     ToolChange,
 )
-from gcode.write import WriteError, WriteOptions, write_file
+from gcode.write import WriteError, WriteOptions, write_program
 from twin.arrays import FloatArray
 from twin.cam.path.toolpath import Move, ToolPath
 from twin.errors import ToolPathError
@@ -103,7 +103,7 @@ def write_nc(path: Path | str, operations: Sequence[Operation], options: NcOptio
     if not operations or all(o.path.empty for o in operations):
         raise ToolPathError(f"{path}: no file is written, for the tool path is empty; expected one that cuts something")
     try:
-        return write_file(path, nc_events(operations, options), _write_options(operations, options))
+        return write_program(path, nc_events(operations, options), _write_options(operations, options))
     except (WriteError, ValueError) as error:
         raise ToolPathError(f"{path}: {error}") from error
     except OSError as error:

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from gcode.dialects import FANUC, Dialect
 from gcode.errors import GcodeError, Place
 from gcode.events import MotionState
-from gcode.flow.interpret import Text
-from gcode.report.motion_arrays import Kind, MotionArrays, motion_arrays
+from gcode.flow.interpreter import ProgramSource
+from gcode.report.motion_arrays import MotionArrays, MotionKind, motion_arrays
 from gcode.settings import MachineSettings
 from twin.arrays import FloatArray, frozen
 from twin.cam.path.toolpath import arc_sweep_rad
@@ -23,7 +23,7 @@ from twin.tools.shape import ToolShape
 
 def cut_program(
     stock: Dexels,
-    program: Text,
+    program: ProgramSource,
     tools: Mapping[int, ToolShape],
     *,
     file: str = "<program>",
@@ -62,8 +62,8 @@ def program_strokes(
     lift = lifts[motions.state] - origin_mm
     tool = motions.tool
     for number in np.unique(tool).tolist():
-        lines = (tool == number) & np.isin(motions.kind, (Kind.RAPID, Kind.FEED, Kind.TAP))
-        arcs = np.flatnonzero((tool == number) & (motions.kind == Kind.ARC))
+        lines = (tool == number) & np.isin(motions.kind, (MotionKind.RAPID, MotionKind.FEED, MotionKind.TAP))
+        arcs = np.flatnonzero((tool == number) & (motions.kind == MotionKind.ARC))
         curved = Strokes.of_moves((_arc(motions, int(i), lift[i]) for i in arcs), chord_mm)
         yield (
             number,

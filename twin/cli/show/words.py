@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from gcode.cli.words import clock, grouped, plural
+from gcode.cli.number_format import clock, grouped, plural
 
 __all__ = ["clock", "column", "digits", "grouped", "plural", "size", "volume"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from gcode.control.modal import code_name
+from gcode.control.command import code_name
 from gcode.control.state import AXES, State
 from gcode.cycles import Cycle
 from gcode.events import PLANE_AXES

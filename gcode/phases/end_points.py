@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from gcode.control.coordinates import SAME_PLACE_MM
-from gcode.control.modal import Command
+from gcode.control.command import Command
+from gcode.control.coordinates import SAME_POSITION_MM
 from gcode.control.state import AXES, EXTRA_AXES, State
 from gcode.events import PLANE_AXES, Extra, Point
 from gcode.language.blocks import Word
@@ -83,7 +83,7 @@ def _from_polar(state: State, command: Command, here: Point, end: list[float]) -
     centre = modes.polar_centre_mm or (0.0, 0.0, 0.0)
     u, v = here[i] - centre[i], here[j] - centre[j]
     radius, angle = math.hypot(u, v), math.degrees(math.atan2(v, u))
-    if AXES[i] in words and not modes.absolute and radius > SAME_PLACE_MM:
+    if AXES[i] in words and not modes.absolute and radius > SAME_POSITION_MM:
         word = words[AXES[i]]
         problem = f"{word.text} as an incremental radius away from the polar origin, which controls take differently"
         raise command.block.error(word, "polar-incremental", problem, "G90, or G16 again where the tool is")

@@ -26,7 +26,7 @@ class LengthOffset:
 
 
 @dataclass(slots=True)
-class Control:
+class ControlMemory:
     """What the words so far have set.
 
     Attributes:
@@ -83,7 +83,7 @@ class Control:
 
 
 @dataclass(slots=True)
-class Stream:
+class EventStream:
     """Events with their numbers, the next of which can be looked at.
 
     Args:

@@ -10,7 +10,7 @@ from gcode.dialects.macro_language import MacroLanguage
 from gcode.errors import GcodeError, Place
 from gcode.language.blocks import ParsedBlock, Word
 from gcode.language.expressions import EvaluationError, Source, parse_operand
-from gcode.language.parse_statements import parse_assignment, parse_statement
+from gcode.language.statement_parser import parse_assignment, parse_statement
 
 #: Longest line that is read, characters; controls stop at a few hundred.
 MAX_LINE = 4096

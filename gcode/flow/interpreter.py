@@ -1,44 +1,43 @@
 """The interpreter: lines of a program -> events, one block after another.
 
-    lines -> `program` -> `parse` (words, statements) -> `runner` (`flow`: jumps and calls)
-          -> `step`: `modal` (codes looked up) -> phases (`actions`, `offsets`, `motion`, ...) -> `compensated`
+    lines -> `language.program` -> `language.block_parser` (words, statements) -> `flow.runner` (jumps, calls)
+          -> `flow.step`: `control.command` (codes looked up) -> `phases` (modes, offsets, motions) -> events
 
-`step` is the whole semantics of a block of words and a pure function; `interpret` and `check` only feed it.
+`step` is the whole semantics of a block of words and a pure function; `interpret` and `check` only drive it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import TypeAlias
 
 from gcode.bulk.plain_runs import PlainBatch, expand
-from gcode.dialects import DIALECTS, FANUC, Dialect
+from gcode.dialects import DIALECTS, FANUC, Dialect, dialect_named
 from gcode.errors import GcodeError, Place
 from gcode.events import Event
 from gcode.flow.runner import Runner
-from gcode.flow.step import step
 from gcode.language.foreign import recognise
 from gcode.language.program import Program, program_of, read_program
 from gcode.settings import MachineSettings
 
-__all__ = ["check", "interpret", "interpret_file", "read_program", "run", "step"]
-
-Text = str | bytes | Iterable[str] | Program
+#: A program: its text, its lines, the path of its file, or the result of `read_program`.
+ProgramSource: TypeAlias = str | bytes | Iterable[str] | Path | Program
 
 
 def interpret(
-    source: Text,
+    source: ProgramSource,
     *,
     file: str = "<program>",
-    dialect: Dialect = FANUC,
+    dialect: Dialect | str = FANUC,
     settings: MachineSettings | None = None,
 ) -> Iterator[Event]:
     """Runs a program.
 
     Args:
-        source: the program's text, its lines, or what `read_program` gives for a file.
-        file: name for places in events and errors; that of a file is its own.
-        dialect: the control whose language the program is in.
+        source: the program's text, its lines, the path of its file (a `Path`), or the result of `read_program`.
+        file: name of a text in places of events and errors; a file is named by its path.
+        dialect: the control whose language the program is in, or its name: ``"haas"``.
         settings: the machine at the program's start; default `MachineSettings()`.
 
     Yields:
@@ -46,6 +45,7 @@ def interpret(
 
     Raises:
         GcodeError: at the first block that is refused; the events before it have been yielded.
+        ValueError: for an unknown name of a dialect.
     """
     for event in run(source, file=file, dialect=dialect, settings=settings):
         if isinstance(event, PlainBatch):
@@ -55,49 +55,63 @@ def interpret(
 
 
 def interpret_file(
-    path: Path | str, *, dialect: Dialect = FANUC, settings: MachineSettings | None = None
+    path: Path | str, *, dialect: Dialect | str = FANUC, settings: MachineSettings | None = None
 ) -> Iterator[Event]:
-    """Runs a program file; see `interpret`."""
+    """Runs a program file.
+
+    Args:
+        path: the file.
+        dialect: the control whose language the program is in, or its name.
+        settings: the machine at the program's start; default `MachineSettings()`.
+
+    Yields:
+        The events of the program; see `interpret`.
+
+    Raises:
+        GcodeError: for a file that cannot be read, and at the first block that is refused.
+    """
     return interpret(read_program(path), dialect=dialect, settings=settings)
 
 
 def run(
-    source: Text,
+    source: ProgramSource,
     *,
     file: str = "<program>",
-    dialect: Dialect = FANUC,
+    dialect: Dialect | str = FANUC,
     settings: MachineSettings | None = None,
 ) -> Iterator[Event | PlainBatch]:
-    """Runs a program as `interpret` does, with runs of plain straight motions left together for speed.
+    """Runs a program as `interpret` does, and leaves runs of plain straight motions together for speed.
+
+    Arguments and errors as for `interpret`.
 
     Yields:
         Events, and `PlainBatch`es that stand for the events of many blocks.
     """
     program = _program(source, file)
     _refuse_foreign(program)
-    yield from Runner(program, dialect, settings or MachineSettings(), _raise).run()
+    yield from Runner(program, _dialect(dialect), settings or MachineSettings(), _raise).run()
 
 
 def check(
-    source: Text,
+    source: ProgramSource,
     *,
     file: str = "<program>",
-    dialect: Dialect = FANUC,
+    dialect: Dialect | str = FANUC,
     settings: MachineSettings | None = None,
 ) -> list[GcodeError]:
-    """Runs a program for its mistakes: after a refused block it goes on with the next one (see `recover`).
+    """Finds the errors of a program: after a refused block it continues with the next one (see `flow.recovery`).
 
     Arguments as for `interpret`.
 
     Returns:
-        The refusals in the order of execution, `Limits.errors` at most; empty for a program that runs.
+        The errors in the order of execution, at most `Limits.errors` of them; empty for a program that runs.
     """
     settings = settings or MachineSettings()
     errors: list[GcodeError] = []
     try:
         program = _program(source, file)
         _refuse_foreign(program)
-        for _ in Runner(program, dialect, settings, errors.append).run():
+        for _ in Runner(program, _dialect(dialect), settings, errors.append).run():
             if len(errors) >= settings.limits.errors:
                 break
     except GcodeError as error:
@@ -105,15 +119,21 @@ def check(
     return errors[: settings.limits.errors]
 
 
-def _program(source: Text, file: str) -> Program:
-    return source if isinstance(source, Program) else program_of(source, file)
+def _program(source: ProgramSource, file: str) -> Program:
+    if isinstance(source, Program):
+        return source
+    return read_program(source) if isinstance(source, Path) else program_of(source, file)
+
+
+def _dialect(dialect: Dialect | str) -> Dialect:
+    return dialect_named(dialect) if isinstance(dialect, str) else dialect
 
 
 def _refuse_foreign(program: Program) -> None:
-    """Refuses a text that another kind of control, or none, understands.
+    """Refuses a text for another kind of control, and one that is not a program.
 
     Raises:
-        GcodeError: where its first part says so.
+        GcodeError: where the beginning of the text shows it.
     """
     foreign = recognise(program.head)
     if foreign is not None:

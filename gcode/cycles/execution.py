@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from gcode.cycles.call import CycleInput, CycleOutput
 from gcode.cycles.errors import CycleError
 from gcode.cycles.hole import MOST_STEPS, Hole, hole_of
+from gcode.cycles.interface import CycleInput, CycleOutput
 from gcode.cycles.rules import Act, Cycle, CycleRules
 from gcode.cycles.steps import Position
 from gcode.cycles.strokes import Tool

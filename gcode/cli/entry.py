@@ -28,7 +28,7 @@ def run(arguments: Sequence[str]) -> int:
         the exit code, see `gcode.cli.exit_codes`.
     """
     from gcode.cli.app import app
-    from gcode.cli.say import UnusableFileError, fail
+    from gcode.cli.console import UnusableFileError, fail
 
     try:
         app(args=list(arguments), prog_name="gcode")

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from gcode.dialects.codes import Status
 from gcode.events import Motion
 from gcode.settings import ToolOffset
-from gcode.write.control import Control, LengthOffset
+from gcode.write.control_memory import ControlMemory, LengthOffset
 from gcode.write.numbers import plain
 
 #: Two places or lengths that are no farther apart than this, mm, are one.
@@ -18,7 +18,7 @@ _LENGTH_DECIMALS = 7
 _SIGNS: Mapping[str, float] = {"G43": 1.0, "G44": -1.0}
 
 
-def set_length(control: Control, event: Motion) -> tuple[list[str], list[str]]:
+def set_length(control: ControlMemory, event: Motion) -> tuple[list[str], list[str]]:
     """Puts on the length offset of a motion, and checks that the motion begins where the last one ended.
 
     Returns:
@@ -38,7 +38,7 @@ def set_length(control: Control, event: Motion) -> tuple[list[str], list[str]]:
     return (words, []) if words[0] == "G43.1" else ([], words)
 
 
-def check_gap(control: Control, event: Motion) -> None:
+def check_gap(control: ControlMemory, event: Motion) -> None:
     """Checks that a motion with the offset of the last one begins where that ended.
 
     Raises:
@@ -48,7 +48,7 @@ def check_gap(control: Control, event: Motion) -> None:
         _check_gap(control, event, control.length, control.length)
 
 
-def _check_gap(control: Control, event: Motion, old: LengthOffset, new: LengthOffset) -> None:
+def _check_gap(control: ControlMemory, event: Motion, old: LengthOffset, new: LengthOffset) -> None:
     if control.at_mm is None:
         return
     moved = zip(control.at_mm, old.vector_mm, new.vector_mm, strict=True)
@@ -58,7 +58,7 @@ def _check_gap(control: Control, event: Motion, old: LengthOffset, new: LengthOf
         raise control.error(event, "gap", problem, "motions that begin where the last one ends")
 
 
-def _words(control: Control, event: Motion, new: LengthOffset) -> Iterator[str]:
+def _words(control: ControlMemory, event: Motion, new: LengthOffset) -> Iterator[str]:
     dialect = control.options.dialect
     dynamic = dialect.codes.get("G43.1")
     if new == LengthOffset():
@@ -76,7 +76,7 @@ def _words(control: Control, event: Motion, new: LengthOffset) -> Iterator[str]:
         raise control.error(event, "tool-length", problem, f"one by a number, as {dialect.name} has them")
 
 
-def _by_number(control: Control, event: Motion, number: int, length_mm: float) -> str:
+def _by_number(control: ControlMemory, event: Motion, number: int, length_mm: float) -> str:
     """G43, or G44 where the table shows that the length is subtracted."""
     tools, codes = control.options.tools, control.options.dialect.codes
     if tools is None:

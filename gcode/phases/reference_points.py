@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from gcode.control.coordinates import ORIGIN, SAME_PLACE_MM
-from gcode.control.modal import Command
+from gcode.control.command import Command
+from gcode.control.coordinates import ORIGIN, SAME_POSITION_MM
 from gcode.control.state import AXES, EXTRA_AXES, State
 from gcode.events import NO_EXTRA, Extra, Point
 from gcode.language.blocks import Word
+from gcode.phases.end_points import extra_end, programmed_end, settled
 from gcode.phases.modes import Action, Result, whole_number
 from gcode.phases.offsets import to_extra, with_length
-from gcode.phases.straight import straight
-from gcode.phases.targets import extra_end, programmed_end, settled
+from gcode.phases.straight_motion import straight
 
 
 def return_to_reference(state: State, command: Command) -> Result:
@@ -97,7 +97,7 @@ def _check(state: State, command: Command) -> Result:
     state, events = straight(state, command, programmed_end(state, command), rapid=True)
     point, _ = _reference_point(state, command)
     for axis, there, here in zip(AXES, point, state.gauge_mm, strict=True):
-        if axis in named and abs(there - here) > SAME_PLACE_MM:
+        if axis in named and abs(there - here) > SAME_POSITION_MM:
             problem = f"{command.words[axis].text} ends at {here:.4f} mm of the machine, not at the reference point"
             raise command.block.error(command.words[axis], "reference-missed", problem, f"{there:.4f} mm")
     return state, events

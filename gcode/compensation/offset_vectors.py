@@ -15,7 +15,7 @@ from gcode.compensation.planar import Segment, circle_circle, cross, dot, line_c
 from gcode.errors import GcodeError
 
 Joint: TypeAlias = Literal["linear", "arc"]
-Kind: TypeAlias = Literal["A", "B"]
+StartupType: TypeAlias = Literal["A", "B"]
 Bend: TypeAlias = Literal["inner", "obtuse", "acute"]
 Points: TypeAlias = tuple[complex, ...]
 
@@ -71,7 +71,7 @@ def upright(segment: Segment, offset: float) -> Points:
     return (segment.end + 1j * offset * segment.direction_out,)
 
 
-def startup_vectors(corner: Corner, kind: Kind, joint: Joint) -> Points:
+def startup_vectors(corner: Corner, kind: StartupType, joint: Joint) -> Points:
     """Start-up (the first motion of G41 or G42).
 
     Type A ends at right angles to the start of the next block at every corner; type B does so at inner corners only
@@ -82,7 +82,7 @@ def startup_vectors(corner: Corner, kind: Kind, joint: Joint) -> Points:
     return corner_vectors(corner, joint)
 
 
-def cancel_vectors(corner: Corner, kind: Kind, joint: Joint) -> Points:
+def cancel_vectors(corner: Corner, kind: StartupType, joint: Joint) -> Points:
     """Cancel (the motion of G40), which mirrors the start-up: at right angles to the end of the block before."""
     if kind == "A" or corner.bend == "inner":
         return upright(corner.before, corner.offset)

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from gcode.control.modal import Command, resolve
+from gcode.control.command import Command, resolve
 from gcode.control.state import State
 from gcode.errors import GcodeError
 from gcode.flow.step import PHASES
 from gcode.language.blocks import ParsedBlock
-from gcode.phases.targets import moved_to, programmed_end, settled
+from gcode.phases.end_points import moved_to, programmed_end, settled
 
 #: Feed that is taken to hold once a missing one has been reported, mm/min.
 _ASSUMED_FEED = 1.0

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator, Mapping
 
 from gcode.events import NO_EXTRA, PLANE_AXES, ArcMotion, LinearMotion, Motion
-from gcode.write.control import Control, Stream
-from gcode.write.lengths import check_gap, set_length
-from gcode.write.machine import ready
+from gcode.write.control_memory import ControlMemory, EventStream
+from gcode.write.length_offsets import check_gap, set_length
+from gcode.write.machine_functions import ready
 from gcode.write.numbers import Counts, plain
 from gcode.write.strokes import Circle, Line, Stroke, arc_strokes
 from gcode.write.taps import tap_blocks, tap_of
@@ -19,7 +19,7 @@ _CENTRE = "IJK"
 _FEED_DECIMALS: Mapping[str, int] = {"mm": 3, "inch": 5}
 
 
-def motion(control: Control, event: Motion, stream: Stream) -> Iterator[str]:
+def motion(control: ControlMemory, event: Motion, stream: EventStream) -> Iterator[str]:
     """Blocks of one motion, or of a tap, which is several.
 
     Raises:
@@ -49,7 +49,7 @@ def motion(control: Control, event: Motion, stream: Stream) -> Iterator[str]:
     control.at_mm = event.end_mm
 
 
-def feed_word(control: Control, event: Motion, stroke: Stroke | None = None) -> str:
+def feed_word(control: ControlMemory, event: Motion, stroke: Stroke | None = None) -> str:
     """F for a motion's feed; for a helix that of its arc, where that is what the control takes."""
     feed = event.feed_mm_min / control.grid.unit_mm
     if isinstance(stroke, Circle) and control.options.dialect.helix_feed_along_arc:
@@ -57,7 +57,7 @@ def feed_word(control: Control, event: Motion, stroke: Stroke | None = None) -> 
     return f"F{plain(feed, _FEED_DECIMALS[control.options.units])}"
 
 
-def _check(control: Control, event: Motion) -> None:
+def _check(control: ControlMemory, event: Motion) -> None:
     """Refuses a motion of which no block can be made."""
     points = [event.start_mm, event.end_mm, *([event.centre_mm] if isinstance(event, ArcMotion) else [])]
     if not all(math.isfinite(value) for point in points for value in point):
@@ -72,7 +72,7 @@ def _check(control: Control, event: Motion) -> None:
         raise control.error(event, "bad-value", f"a feed of {event.feed_mm_min:g} mm/min", expected)
 
 
-def _strokes(control: Control, event: Motion) -> Iterator[Stroke]:
+def _strokes(control: ControlMemory, event: Motion) -> Iterator[Stroke]:
     """The strokes of a motion. An arc whose start no word has named yet is led in by a straight feed to it."""
     if isinstance(event, LinearMotion):
         yield Line(control.grid.point(event.end_mm))
@@ -83,7 +83,7 @@ def _strokes(control: Control, event: Motion) -> Iterator[Stroke]:
     yield from arc_strokes(event, control.at, control.grid, control.options.dialect)
 
 
-def _words(control: Control, event: Motion, stroke: Stroke) -> Iterator[str]:
+def _words(control: ControlMemory, event: Motion, stroke: Stroke) -> Iterator[str]:
     rapid = isinstance(event, LinearMotion) and event.rapid
     incremental = control.options.distance == "incremental" and not control.unsure
     yield from control.modal("distance", "G91" if incremental else "G90")
@@ -97,7 +97,7 @@ def _words(control: Control, event: Motion, stroke: Stroke) -> Iterator[str]:
         yield from control.modal("F", feed_word(control, event, stroke))
 
 
-def _circle(control: Control, stroke: Circle, *, incremental: bool) -> Iterator[str]:
+def _circle(control: ControlMemory, stroke: Circle, *, incremental: bool) -> Iterator[str]:
     i, j, _ = PLANE_AXES[stroke.plane]
     yield from control.modal("motion", "G3" if stroke.turns > 0 else "G2")
     by_radius = control.options.arcs == "radius" and stroke.radius is not None
@@ -111,7 +111,7 @@ def _circle(control: Control, stroke: Circle, *, incremental: bool) -> Iterator[
         yield f"P{abs(stroke.turns)}"
 
 
-def _axes(control: Control, end: Counts, needed: str, *, incremental: bool) -> Iterator[str]:
+def _axes(control: ControlMemory, end: Counts, needed: str, *, incremental: bool) -> Iterator[str]:
     """Axis words of a motion: those that change, those that are needed, and at least one."""
     assert control.at is not None
     if control.unsure or not control.options.modal:

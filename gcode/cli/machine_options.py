@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from gcode.cli.say import UnusableFileError
+from gcode.cli.console import UnusableFileError
 from gcode.errors import GcodeError
 
 if TYPE_CHECKING:

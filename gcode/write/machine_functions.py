@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from gcode.dialects.codes import Status
 from gcode.events import CoolantChange, Dwell, Event, MotionState, ProgramStop, SpindleChange, ToolChange
-from gcode.write.control import Control
+from gcode.write.control_memory import ControlMemory
 from gcode.write.numbers import plain
 
 _SPINDLE: Mapping[int, str] = {1: "M3", -1: "M4", 0: "M5"}
@@ -15,7 +15,7 @@ _SPINDLE: Mapping[int, str] = {1: "M3", -1: "M4", 0: "M5"}
 _SECONDS_DECIMALS = 4
 
 
-def tool_change(control: Control, event: ToolChange) -> Iterator[str]:
+def tool_change(control: ControlMemory, event: ToolChange) -> Iterator[str]:
     """M6, behind which the spindle stands and the machine is somewhere else."""
     rule = control.options.dialect.codes.get("M6")
     if rule is None or rule.status is not Status.EXECUTED:
@@ -27,12 +27,12 @@ def tool_change(control: Control, event: ToolChange) -> Iterator[str]:
     yield control.line(f"T{event.tool}", "M6")
 
 
-def spindle_change(control: Control, event: SpindleChange) -> Iterator[str]:
+def spindle_change(control: ControlMemory, event: SpindleChange) -> Iterator[str]:
     """S, M3, M4, M5."""
     return spindle(control, event, event.spindle_rpm, event.spindle_direction)
 
 
-def spindle(control: Control, event: Event, rpm: float, direction: int) -> Iterator[str]:
+def spindle(control: ControlMemory, event: Event, rpm: float, direction: int) -> Iterator[str]:
     """Words for what changes of speed and direction."""
     if not math.isfinite(rpm) or rpm < 0.0:
         raise control.error(event, "bad-value", f"a spindle speed of {rpm:g} rpm", "a finite one of 0 or more")
@@ -46,7 +46,7 @@ def spindle(control: Control, event: Event, rpm: float, direction: int) -> Itera
         yield control.line(*words)
 
 
-def coolant(control: Control, event: CoolantChange) -> Iterator[str]:
+def coolant(control: ControlMemory, event: CoolantChange) -> Iterator[str]:
     """M7, M8, M9."""
     if (control.mist and not event.mist) or (control.flood and not event.flood):
         control.mist = control.flood = False
@@ -58,20 +58,20 @@ def coolant(control: Control, event: CoolantChange) -> Iterator[str]:
     control.mist, control.flood = event.mist, event.flood
 
 
-def ready(control: Control, event: Event, state: MotionState) -> Iterator[str]:
+def ready(control: ControlMemory, event: Event, state: MotionState) -> Iterator[str]:
     """Tool and spindle as a motion's state has them, where no event has said so."""
     if state.tool != control.tool:
         yield from tool_change(control, ToolChange(place=event.place, tool=state.tool))
     yield from spindle(control, event, state.spindle_rpm, state.spindle_direction)
 
 
-def dwell(control: Control, event: Dwell) -> Iterator[str]:
+def dwell(control: ControlMemory, event: Dwell) -> Iterator[str]:
     """G4."""
     yield from ready(control, event, event.state)
     yield control.line("G4", pause(control, event, event.seconds))
 
 
-def pause(control: Control, event: Event, seconds: float) -> str:
+def pause(control: ControlMemory, event: Event, seconds: float) -> str:
     """P for a time."""
     if not math.isfinite(seconds) or seconds < 0.0:
         raise control.error(event, "bad-value", f"a dwell of {seconds:g} s", "a finite one of 0 or more")
@@ -79,7 +79,7 @@ def pause(control: Control, event: Event, seconds: float) -> str:
     return f"P{plain(seconds / word.seconds, 0 if word.pointed is None else _SECONDS_DECIMALS)}"
 
 
-def stop(control: Control, event: ProgramStop) -> Iterator[str]:
+def stop(control: ControlMemory, event: ProgramStop) -> Iterator[str]:
     """M0, M1, M30."""
     if event.end:
         control.ended = True

@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from gcode.compensation.planar import SAME_POINT_MM, Frame, Segment
+from gcode.compensation.planar import SAME_POINT_MM, Segment, WorkingPlane
 from gcode.errors import GcodeError, Place
 from gcode.events import Event, Motion, Plane, Point
 
@@ -30,7 +30,7 @@ class Compensation(ABC):
         height: where it stands along the plane's normal, mm.
     """
 
-    frame: Frame
+    frame: WorkingPlane
     at: complex
     height: float
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from gcode.control.modal import Command
+from gcode.control.command import Command
 from gcode.control.state import State
 from gcode.events import Extra, LinearMotion, Point
+from gcode.phases.end_points import feed_mm_min, moved_to, settled
 from gcode.phases.modes import Result
-from gcode.phases.targets import feed_mm_min, moved_to, settled
 
 
 def straight(

@@ -6,17 +6,17 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from gcode.control.modal import Command
+from gcode.control.command import Command
 from gcode.control.state import AXES, State
 from gcode.events import LinearMotion, Point
 from gcode.phases.arcs import arc
 from gcode.phases.canned_cycles import drill
+from gcode.phases.end_points import extra_end, moved_to, programmed_end, require_axes, settled
 from gcode.phases.modes import Action, Result
 from gcode.phases.polar_words import POLAR_LETTERS, as_axis_words
-from gcode.phases.reference import return_to_reference
+from gcode.phases.reference_points import return_to_reference
 from gcode.phases.splines import cubic_spline, quadratic_spline
-from gcode.phases.straight import straight
-from gcode.phases.targets import extra_end, moved_to, programmed_end, require_axes, settled
+from gcode.phases.straight_motion import straight
 
 
 def move(state: State, command: Command) -> Result:
