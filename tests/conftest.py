@@ -1,8 +1,13 @@
 """Settings for the whole suite."""
 
 import os
+from pathlib import Path
 
+import pytest
 from hypothesis import settings
+
+#: More processes than this spend their time compiling the same kernels.
+MOST_PROCESSES = 8
 
 # kernels compile during the first examples; machines differ in speed
 settings.register_profile("steady", deadline=None)
@@ -12,3 +17,14 @@ settings.load_profile("steady")
 for name in ("FORCE_COLOR", "GITHUB_ACTIONS", "NO_COLOR", "PY_COLORS", "TTY_COMPATIBLE", "TTY_INTERACTIVE"):
     os.environ.pop(name, None)
 os.environ["TERM"] = "xterm"
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """One process for each processor, but none for a few test files: starting processes takes longer than those."""
+    if os.environ.get("PYTEST_XDIST_AUTO_NUM_WORKERS"):
+        return None
+    if all(Path(argument.split("::")[0]).is_file() for argument in config.args):
+        return 0
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(usable, MOST_PROCESSES)
