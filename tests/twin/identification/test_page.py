@@ -39,7 +39,7 @@ def test_the_page_has_every_key() -> None:
 
 def test_the_command_lines_page_has_every_option() -> None:
     page = (ROOT / "docs" / "command-line.md").read_text().split("## Options of `twin identify`")[1].split("\n## ")[0]
-    source = (ROOT / "twin" / "cli" / "identify.py").read_text()
+    source = (ROOT / "twin" / "cli" / "commands" / "identify.py").read_text()
     options = {o for text in re.findall(r'"(--[a-z/-]+)"', source) for o in text.split("/")}
     # those without a declaration are named after their parameter
     options |= {"--" + name for name in re.findall(r"^    (method|holdout|plot): ", source, flags=re.M)}
