@@ -1,4 +1,4 @@
-"""The one error root of the package; place and text are fields, not just words in a message."""
+"""The root of the package's errors; position and text are fields, not only parts of the message."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ class Call:
     """One level of the call stack.
 
     Attributes:
-        program: what was called, e.g. ``O1000`` or ``o<pocket>``.
+        program: the program that was called, e.g. ``O1000`` or ``o<pocket>``.
         file: file of the calling block.
         line: line of the calling block.
     """
@@ -27,12 +27,12 @@ class Call:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Place:
-    """Where in an NC program something stands.
+    """A position in the text of an NC program or of another file.
 
     Attributes:
-        file: name of the program file, as the user gave it.
-        line: line in the file, counted from 1.
-        column: column in the line, counted from 1; 1 where a whole block is meant.
+        file: name of the file, as the user gave it.
+        line: line in the file, counted from 1; 0 for the file as a whole.
+        column: column in the line, counted from 1; 1 for a whole block.
         text: the block as written, without its line end.
         calls: the calls that led here, the outermost first; empty in the main program.
     """
@@ -44,17 +44,17 @@ class Place:
     calls: tuple[Call, ...] = ()
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}:{self.column}"
+        return f"{self.file}:{self.line}:{self.column}" if self.line else self.file
 
 
 class GcodeError(Exception):
-    """A refused NC program: what is wrong, where, and what was expected.
+    """An NC program, or another file, that is refused: the position, the problem, and what was expected.
 
     Attributes:
-        place: where the offending word stands.
-        code: short stable name of the kind of mistake, e.g. ``missing-feed``.
-        problem: what is wrong, naming the word and its value.
-        expected: what would have been right.
+        place: position of the offending word.
+        code: short stable name of the kind of error, e.g. ``missing-feed``.
+        problem: the problem, naming the word and its value.
+        expected: a correct alternative; empty where there is none.
     """
 
     def __init__(self, place: Place, code: str, problem: str, expected: str = "") -> None:

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from gcode.cli.check import check
+from gcode.cli.help import HelpCommand, HelpGroup
 from gcode.cli.motions import motions
 from gcode.cli.plot import plot
 from gcode.cli.rewrite import rewrite
@@ -14,33 +15,39 @@ from gcode.cli.stats import stats
 
 app = typer.Typer(
     name="gcode",
-    help="Reads NC programs as a control does: checks them, tells their motions, writes them anew.",
-    epilog="Exit codes: 0 done, 1 a program has mistakes that messages name, 2 wrong arguments or a file that cannot "
-    "be used, 130 Ctrl-C.",
-    no_args_is_help=True,
-    add_completion=False,
+    cls=HelpGroup,
+    help="Reads NC programs as a control does: checks them, prints their motions, sums them up, draws them, and "
+    "writes them again for another control.",
+    epilog="Exit codes: 0 done, 1 an error in a program or another file, 2 wrong use of the command line, 130 Ctrl-C, "
+    "141 closed pipe.",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 for command in (check, motions, stats, plot, rewrite):
-    app.command()(command)
+    app.command(cls=HelpCommand)(command)
 
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import PackageNotFoundError, version
+        import platform
+        from importlib.metadata import version
 
-        try:
-            typer.echo(version("machining-twin"))
-        except PackageNotFoundError:
-            typer.echo("not installed")
+        from gcode.version import __version__
+
+        typer.echo(f"gcode {__version__}\npython {platform.python_version()}\nnumpy {version('numpy')}")
         raise typer.Exit
 
 
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and end.")
+        bool,
+        typer.Option(
+            "--version",
+            callback=_print_version,
+            is_eager=True,
+            help="Print the versions of gcode, Python and numpy, and exit.",
+        ),
     ] = False,
 ) -> None: ...

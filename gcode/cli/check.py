@@ -16,28 +16,27 @@ if TYPE_CHECKING:
 
 @with_machine
 def check(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Programs.", show_default=False)],
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object a diagnostic and line.")] = False,
+    files: Annotated[list[Path], typer.Argument(metavar="FILE", help="NC programs.", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per finding, one per line.")] = False,
     notices: Annotated[
-        bool, typer.Option("--notices", help="List words that are understood and have no effect on motion.")
+        bool, typer.Option("--notices", help="Also list the words that have no effect on motion here.")
     ] = False,
     *,
     setup: Setup,
 ) -> None:
-    """Find the mistakes of programs: as many as one run can tell, each with its place."""
-    from gcode.cli.console import fail, written
+    """Find the errors of programs: as many as one run can detect, each with its position."""
+    from gcode.cli.console import fail
     from gcode.cli.findings import findings
 
     codes = {exit_codes.OK}
-    with written():
-        for file in files:
-            found = findings(file, setup)
-            if found.unreadable is not None:
-                fail(str(found.unreadable))
-                codes.add(exit_codes.USAGE)
-                continue
-            (_print_json if as_json else _print_text)(found, notices)
-            codes.add(exit_codes.MISTAKES if found.errors else exit_codes.OK)
+    for file in files:
+        found = findings(file, setup)
+        if found.unreadable is not None:
+            fail(str(found.unreadable))
+            codes.add(exit_codes.ERROR)
+            continue
+        (_print_json if as_json else _print_text)(found, notices)
+        codes.add(exit_codes.ERROR if found.errors else exit_codes.OK)
     raise typer.Exit(max(codes))
 
 
@@ -50,9 +49,9 @@ def _print_text(found: Findings, notices: bool) -> None:
     if notices:
         for group in found.grouped():
             typer.echo(harmless(group))
-    said = plural(len(found.errors), "mistake")
+    count = plural(len(found.errors), "error")
     more = f", {plural(len(found.notices), 'notice')}" if found.notices else ""
-    typer.secho(f"{found.file}: {said}{more}", fg=typer.colors.RED if found.errors else typer.colors.GREEN)
+    typer.secho(f"{found.file}: {count}{more}", fg=typer.colors.RED if found.errors else typer.colors.GREEN)
 
 
 def _print_json(found: Findings, notices: bool) -> None:

@@ -1,9 +1,10 @@
-"""What is said beside results: messages on standard error, progress on a terminal, and the end of a pipe."""
+"""Standard output for results; standard error for messages and, on a terminal, progress."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import sys
 import time
 from collections.abc import Iterable, Iterator
@@ -21,14 +22,13 @@ if TYPE_CHECKING:
 
 #: Width of what is written to a file or a pipe.
 WIDTH = 100
-#: Progress is drawn anew at most this often, s, and looked at every so many events.
+#: Progress is drawn again after this time at the earliest, s; the clock is read once per this many events.
 _EVERY_S = 0.1
 _EVERY_EVENTS = 256
-_SIGPIPE = 13
 
 
 class UnusableFileError(Exception):
-    """A file other than an NC program's text that a command cannot use; the text says which and why."""
+    """A file that a command cannot use, other than the text of an NC program; the message names it and the reason."""
 
 
 def results() -> Console:
@@ -39,25 +39,24 @@ def results() -> Console:
 
 
 def fail(message: str) -> None:
-    """Say what is wrong."""
+    """Prints an error."""
     typer.secho("error:", fg=typer.colors.RED, bold=True, err=True, nl=False)
     typer.echo(f" {harmless(message)}", err=True)
 
 
-@contextlib.contextmanager
-def written() -> Iterator[None]:
-    """What is written to standard output inside: when its reader has gone, the command ends without a word."""
-    try:
-        yield
-        sys.stdout.flush()
-    except BrokenPipeError:
-        with contextlib.suppress(OSError, ValueError):  # what is left in the buffer has nowhere to go
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        raise typer.Exit(exit_codes.SIGNAL + _SIGPIPE) from None
+def closed_pipe() -> int:
+    """Ends standard output, whose reader is gone, without a message.
+
+    Returns:
+        The exit code.
+    """
+    with contextlib.suppress(OSError, ValueError):  # the rest of the buffer has no reader
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return exit_codes.SIGNAL + signal.SIGPIPE
 
 
 def with_progress(events: Iterable[Event], name: str) -> Iterator[Event]:
-    """Hands events on, and tells on a terminal how far the program has come.
+    """Hands events on, and shows on a terminal how far the program has come.
 
     Args:
         name: of the program.

@@ -1,13 +1,19 @@
-"""From arguments to an exit code: what a user can mend is one message, never a traceback."""
+"""From arguments to an exit code: every error that a user can correct is one message, never a traceback."""
 
 from __future__ import annotations
 
 import io
+import signal
 import sys
 from collections.abc import Sequence
 
+import typer
+
 from gcode.cli import exit_codes
 from gcode.errors import GcodeError
+
+#: Typer's error for a wrong use of the command line. Typer exports this one of its subclasses only.
+_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 
 def main() -> None:
@@ -19,26 +25,56 @@ def main() -> None:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Carry out a command line.
+    """Carries out a command line.
 
     Args:
         arguments: without the program's name.
 
     Returns:
-        the exit code, see `gcode.cli.exit_codes`.
+        The exit code, see `gcode.cli.exit_codes`.
     """
     from gcode.cli.app import app
-    from gcode.cli.console import UnusableFileError, fail
+    from gcode.cli.console import UnusableFileError, closed_pipe, fail
 
     try:
-        app(args=list(arguments), prog_name="gcode")
-    except SystemExit as end:
-        return end.code if isinstance(end.code, int) else exit_codes.OK
+        code = carry_out(app, arguments, "gcode")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        return closed_pipe()
     except UnusableFileError as error:
         fail(str(error))
-        return exit_codes.USAGE
     except GcodeError as error:
         fail(error.underlined())
     except MemoryError:
         fail("not enough memory")
-    return exit_codes.MISTAKES
+    else:
+        return code
+    return exit_codes.ERROR
+
+
+def carry_out(app: typer.Typer, arguments: Sequence[str], name: str) -> int:
+    """Runs a command of `app`; a wrong use of the command line is one message.
+
+    Args:
+        app: the commands.
+        arguments: without the program's name.
+        name: of the program.
+
+    Returns:
+        The exit code that the command ends with.
+    """
+    from gcode.cli.console import fail
+
+    try:
+        code = app(args=list(arguments) or ["--help"], prog_name=name, standalone_mode=False)
+        code = code if arguments else exit_codes.USAGE
+    except _UsageError as error:
+        context = getattr(error, "ctx", None)
+        command = name if context is None else context.command_path
+        fail(f"{str(error.format_message()).rstrip('.')}; see '{command} --help'")  # type: ignore[attr-defined]
+        return exit_codes.USAGE
+    except typer.Abort:
+        return exit_codes.SIGNAL + signal.SIGINT
+    except SystemExit as end:
+        code = end.code
+    return code if isinstance(code, int) else exit_codes.OK

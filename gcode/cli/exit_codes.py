@@ -1,10 +1,10 @@
-"""What the program's exit code says."""
+"""Exit codes of the program; `twin` has the same, and 3 and 4 besides for collisions and tolerances."""
 
-#: All went well.
+#: Done; of a check: no errors.
 OK = 0
-#: A program has mistakes, which messages name.
-MISTAKES = 1
-#: Arguments that make no command, or a file that could not be used.
+#: An input has an error, or the work failed; the message on standard error says which and why.
+ERROR = 1
+#: Wrong use of the command line: an unknown option, a value out of range, a file that does not exist.
 USAGE = 2
-#: Ended by a signal: this plus its number, so 130 for Ctrl-C.
+#: Ended by a signal: this plus its number, so 130 for Ctrl-C and 141 for a closed pipe.
 SIGNAL = 128

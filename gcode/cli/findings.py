@@ -1,10 +1,8 @@
-"""All that a check finds in one program."""
+"""The findings of a check of one program."""
 
 from __future__ import annotations
 
 import contextlib
-import errno
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,19 +15,19 @@ from gcode.flow.interpreter import check, run
 from gcode.language.program import Program, read_program
 from gcode.report.motion_json import call_objects
 
-#: So many lines of a notice's group are named.
+#: Most lines that are listed for notices of equal text.
 _MOST_LINES = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Findings:
-    """What a check says about one file.
+    """The errors and notices of one file.
 
     Attributes:
         file: the program.
-        errors: its mistakes in the order of the program.
-        notices: its words without effect on motion.
-        unreadable: why the file cannot be read, None where it can.
+        errors: its errors in the order of the program.
+        notices: its words that have no effect on motion.
+        unreadable: the message for a file that cannot be read, None for one that can.
     """
 
     file: str
@@ -38,10 +36,10 @@ class Findings:
     unreadable: str | None = None
 
     def objects(self, *, notices: bool) -> Iterator[dict[str, Any]]:
-        """The diagnostics as JSON objects, those of mistakes first.
+        """The findings as JSON objects, errors first.
 
         Args:
-            notices: tell notices too.
+            notices: include notices.
         """
         for error in self.errors:
             yield {
@@ -63,7 +61,7 @@ class Findings:
             }
 
     def grouped(self) -> Iterator[str]:
-        """The notices, those that say the same as one, with the lines they stand in."""
+        """The notices, those of equal text as one, with their lines."""
         groups: dict[tuple[str, str, str], dict[int, None]] = {}
         for notice in self.notices:
             groups.setdefault((notice.place.file, notice.code, notice.text), {})[notice.place.line] = None
@@ -75,29 +73,20 @@ class Findings:
 
 def findings(file: Path, setup: Setup) -> Findings:
     """Checks a program."""
-    reason = _unreadable(file)
-    if reason is not None:
-        return Findings(file=str(file), unreadable=f"{file}: {reason}")
-    program = read_program(file)
+    try:
+        program = read_program(file)
+    except GcodeError as error:
+        return Findings(file=str(file), unreadable=str(error))
     errors = check(program, dialect=setup.dialect, settings=setup.settings)
     return Findings(file=str(file), errors=tuple(errors), notices=tuple(_notices(program, setup)))
 
 
 def _notices(program: Program, setup: Setup) -> Iterator[Notice]:
-    """The notices of a program up to its first mistake."""
+    """The notices of a program up to its first error."""
     with contextlib.suppress(GcodeError):
         for event in run(program, dialect=setup.dialect, settings=setup.settings):
             if isinstance(event, Notice):
                 yield event
-
-
-def _unreadable(file: Path) -> str | None:
-    """Why a file cannot be read, None where it can."""
-    if file.is_dir():
-        return os.strerror(errno.EISDIR)
-    if not file.exists():
-        return os.strerror(errno.ENOENT)
-    return None if os.access(file, os.R_OK) else os.strerror(errno.EACCES)
 
 
 def _place(place: Place) -> dict[str, Any]:

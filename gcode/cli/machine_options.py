@@ -1,8 +1,9 @@
-"""The options that every command shares: which control the program is for, and what machine it stands before."""
+"""Options that all commands share: the control that the program is for, and the machine at its start."""
 
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from gcode.cli.console import UnusableFileError
+from gcode.cli.console import UnusableFileError, closed_pipe
 from gcode.errors import GcodeError
 
 if TYPE_CHECKING:
@@ -39,14 +40,15 @@ class MachineUnit(StrEnum):
 
 
 ProgramFile = Annotated[
-    Path, typer.Argument(metavar="FILE", exists=True, dir_okay=False, readable=True, show_default=False)
+    Path,
+    typer.Argument(metavar="FILE", help="NC program.", show_default=False),
 ]
-DialectOption = Annotated[DialectName, typer.Option("--dialect", "-d", help="Control whose language it is in.")]
+DialectOption = Annotated[DialectName, typer.Option("--dialect", "-d", help="Control that the program is written for.")]
 ToolTableOption = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.tbl|.toml",
-        help="Tool table: LinuxCNC's, in the machine's unit, or TOML in mm. Without one, lengths and radii are 0.",
+        help="Tool table: of LinuxCNC, in the machine's unit, or TOML, in mm. Without one, lengths and radii are 0.",
         show_default=False,
     ),
 ]
@@ -54,27 +56,27 @@ ParametersOption = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.var",
-        help="LinuxCNC's parameters, in the machine's unit: work offsets, reference points, variables.",
+        help="Parameter file of LinuxCNC, in the machine's unit: work offsets, reference points, variables.",
         show_default=False,
     ),
 ]
 SettingsOption = Annotated[
-    Path | None, typer.Option(metavar="FILE.toml", help="Settings of the machine, lengths in mm.", show_default=False)
+    Path | None, typer.Option(metavar="FILE.toml", help="Machine settings, lengths in mm.", show_default=False)
 ]
 UnitOption = Annotated[
     MachineUnit | None,
     typer.Option(
         "--machine-units",
-        help="Unit of .tbl and .var files; that of the settings if not given, or mm.",
+        help="Unit of .tbl and .var files; default: that of the settings, or mm.",
         show_default=False,
     ),
 ]
-BlockDeleteOption = Annotated[bool, typer.Option("--block-delete", help="Leave blocks out that begin with a slash.")]
+BlockDeleteOption = Annotated[bool, typer.Option("--block-delete", help="Skip blocks that begin with a slash.")]
 SearchPathOption = Annotated[
     list[Path] | None,
     typer.Option(
         metavar="DIR",
-        help="Folder with subprogram files; may be given again. The program's own folder comes first.",
+        help="Folder with subprogram files; may be repeated. The folder of the program is searched first.",
         exists=True,
         file_okay=False,
         show_default=False,
@@ -84,16 +86,16 @@ SearchPathOption = Annotated[
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setup:
-    """Dialect and machine settings that options ask for."""
+    """Dialect and machine settings, from the options."""
 
     dialect: Dialect
     settings: MachineSettings
 
 
 def with_machine(command: Callable[..., None]) -> Callable[..., None]:
-    """A command whose parameter ``setup`` is told by the options that all commands share, those of `setup_of`.
+    """A command whose parameter ``setup`` is made from the options that all commands share, those of `setup_of`.
 
-    Typer reads options off a command's signature: there they take the place of ``setup``.
+    Typer reads options from a command's signature: there they replace ``setup``.
     """
     shared = inspect.signature(setup_of, eval_str=True).parameters
     own = inspect.signature(command, eval_str=True).parameters
@@ -101,7 +103,11 @@ def with_machine(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_options(**values: Any) -> None:
         setup = setup_of(**{name: values.pop(name) for name in shared})
-        command(**values, setup=setup)
+        try:
+            command(**values, setup=setup)
+            sys.stdout.flush()
+        except BrokenPipeError:
+            raise typer.Exit(closed_pipe()) from None
 
     options = {name: p for name, p in (own | shared).items() if name != "setup"}
     keyword_only = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in options.values()]
@@ -120,10 +126,10 @@ def setup_of(
     block_delete: BlockDeleteOption = False,
     search_path: SearchPathOption = None,
 ) -> Setup:
-    """Dialect and settings for the options' values; what is in the other files takes the place of the settings file's.
+    """Dialect and settings from the options; the tool table and the parameter file override the settings file.
 
     Raises:
-        UnusableFileError: for a file with a mistake, naming it.
+        UnusableFileError: for a file with an error, naming it.
     """
     from gcode.dialects import dialect_named
     from gcode.settings import MachineSettings

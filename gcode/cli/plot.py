@@ -12,7 +12,7 @@ from gcode.cli.machine_options import ProgramFile, Setup, with_machine
 
 
 class View(StrEnum):
-    """From where the path is seen."""
+    """Direction of view."""
 
     ISO = "iso"
     XY = "xy"
@@ -21,7 +21,7 @@ class View(StrEnum):
 
 
 class ColourBy(StrEnum):
-    """What the colour of a motion at a feed tells."""
+    """Quantity that colours the feed motions."""
 
     Z = "z"
     TOOL = "tool"
@@ -31,15 +31,17 @@ class ColourBy(StrEnum):
 def plot(
     file: ProgramFile,
     out: Annotated[
-        Path, typer.Option("--out", "-o", metavar="FILE.png|.svg|.pdf", help="Picture to write.", show_default=False)
+        Path, typer.Option("--out", "-o", metavar="FILE.png|.svg|.pdf", help="Image file to write.", show_default=False)
     ],
-    view: Annotated[View, typer.Option(help="From where the path is seen.")] = View.ISO,
-    colour: Annotated[ColourBy, typer.Option(help="What the colours of feeds tell.")] = ColourBy.Z,
-    tolerance_mm: Annotated[float, typer.Option(min=1e-6, help="How far chords may lie off arcs, mm.")] = 0.01,
+    view: Annotated[View, typer.Option(help="Direction of view.")] = View.ISO,
+    colour: Annotated[ColourBy, typer.Option(help="Colour feed motions by height (z) or by tool.")] = ColourBy.Z,
+    tolerance_mm: Annotated[
+        float, typer.Option(min=1e-6, metavar="MM", help="Largest distance of chords from arcs, mm.")
+    ] = 0.01,
     *,
     setup: Setup,
 ) -> None:
-    """Draw the path of a program: rapids dashed, feeds coloured, the same scale along all axes."""
+    """Draw the tool path of a program: rapids dashed, feed motions coloured, all axes to one scale."""
     from gcode.cli.console import UnusableFileError, with_progress
     from gcode.flow.interpreter import interpret_file
     from gcode.report.plot import PlotError, check_picture, plot_path

@@ -12,7 +12,7 @@ from gcode.cli.machine_options import DialectName, MachineUnit, ProgramFile, Set
 
 
 class Distance(StrEnum):
-    """What coordinates are measured from."""
+    """How coordinates are measured."""
 
     ABSOLUTE = "absolute"
     INCREMENTAL = "incremental"
@@ -29,32 +29,38 @@ class Arcs(StrEnum):
 def rewrite(
     file: ProgramFile,
     out: Annotated[
-        Path, typer.Option("--out", "-o", metavar="FILE", help="Program to write.", show_default=False, dir_okay=False)
+        Path,
+        typer.Option("--out", "-o", metavar="FILE", help="Program file to write.", show_default=False, dir_okay=False),
     ],
     to: Annotated[
         DialectName | None,
-        typer.Option(help="Control to write for; the program's own if not given.", show_default=False),
+        typer.Option(help="Control to write for; default: that of the program.", show_default=False),
     ] = None,
-    units: Annotated[MachineUnit, typer.Option(help="Unit of the program written.")] = MachineUnit.MM,
-    distance: Annotated[Distance, typer.Option(help="Coordinates as places or as ways.")] = Distance.ABSOLUTE,
-    arcs: Annotated[Arcs, typer.Option(help="Arcs by I, J, K or, where it is safe, by R.")] = Arcs.CENTRE,
+    units: Annotated[MachineUnit, typer.Option(help="Unit of the new program.")] = MachineUnit.MM,
+    distance: Annotated[
+        Distance, typer.Option(help="Absolute (G90) or incremental (G91) coordinates.")
+    ] = Distance.ABSOLUTE,
+    arcs: Annotated[
+        Arcs, typer.Option(help="Arcs by their centre (I, J, K) or, where it is safe, by their radius (R).")
+    ] = Arcs.CENTRE,
     decimals: Annotated[
-        int | None, typer.Option(min=0, max=6, help="Digits after the point of coordinates.", show_default=False)
+        int | None, typer.Option(min=0, max=6, metavar="N", help="Decimals of coordinates, 0 to 6.", show_default=False)
     ] = None,
     number_step: Annotated[
-        int | None, typer.Option(min=1, max=1000, help="Step of the block numbers.", show_default=False)
+        int | None,
+        typer.Option(min=1, max=1000, metavar="N", help="Increment of the block numbers.", show_default=False),
     ] = None,
     program_number: Annotated[
-        int | None, typer.Option(min=1, help="O number, for FANUC and Haas.", show_default=False)
+        int | None, typer.Option(min=1, metavar="N", help="Program number (O), for FANUC and Haas.", show_default=False)
     ] = None,
-    wcs: Annotated[str, typer.Option(help="Work offset that the coordinates are in.")] = "G54",
+    wcs: Annotated[str, typer.Option(metavar="NAME", help="Work offset that the coordinates refer to.")] = "G54",
     *,
     setup: Setup,
 ) -> None:
-    """Write a program anew: the same motions for another control, in other units, or without macros and cycles.
+    """Write a program again: the same motions for another control, in other units, or without macros and cycles.
 
-    Subprograms, macros, cycles, work offsets and cutter compensation are worked out; what is written are plain
-    motions. A length offset stays G43 H, so the same tool table must be at the control.
+    Subprograms, macros, cycles, work offsets and cutter compensation are resolved into plain motions. A length offset
+    stays G43 H, so the control needs the same tool table.
     """
     from gcode.cli.console import UnusableFileError, with_progress
     from gcode.dialects import dialect_named
@@ -72,7 +78,10 @@ def rewrite(
             program_number=program_number,
             wcs=wcs,
         ).for_machine(setup.settings)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from None
+    try:
         events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
         write_program(out, with_progress(events, file.name), options)
-    except (ValueError, OSError) as error:
-        raise UnusableFileError(str(error)) from None
+    except OSError as error:
+        raise UnusableFileError(f"{out}: cannot be written: {(error.strerror or str(error)).lower()}") from None

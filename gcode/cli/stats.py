@@ -11,7 +11,7 @@ from gcode.cli.machine_options import ProgramFile, Setup, with_machine
 
 def _rate(value: float) -> float:
     if not 0.0 < value < float("inf"):
-        raise typer.BadParameter(f"{value} is no positive, finite rate")
+        raise typer.BadParameter(f"{value} is not a positive, finite rate")
     return value
 
 
@@ -20,29 +20,29 @@ def stats(
     file: ProgramFile,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     rapid_mm_min: Annotated[
-        float, typer.Option("--rapid-mm-min", callback=_rate, help="Speed of rapids along the path, mm/min.")
+        float,
+        typer.Option("--rapid-mm-min", metavar="MM_MIN", callback=_rate, help="Rapid rate along the path, mm/min."),
     ] = 10_000.0,
     *,
     setup: Setup,
 ) -> None:
-    """Sum up a program: lengths, times, the space it needs, feeds and speeds of each tool.
+    """Sum up a program: lengths, times, travel range, feeds and speeds of each tool.
 
-    Times are those of feeds, dwells, and rapids at the given rate; accelerations and tool changes are not in them.
+    Times are of feed motions, dwells, and rapids at the given rate, without accelerations and tool changes.
     """
-    from gcode.cli.console import results, with_progress, written
+    from gcode.cli.console import results, with_progress
     from gcode.flow.interpreter import interpret_file
     from gcode.report.stats import program_stats
 
     events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
     found = program_stats(with_progress(events, file.name), rapid_mm_min)
-    with written():
-        if as_json:
-            import json
+    if as_json:
+        import json
 
-            from gcode.report.stats_json import stats_object
+        from gcode.report.stats_json import stats_object
 
-            typer.echo(json.dumps({"file": str(file), **stats_object(found)}, indent=2))
-        else:
-            from gcode.cli.stats_tables import print_stats
+        typer.echo(json.dumps({"file": str(file), **stats_object(found)}, indent=2))
+    else:
+        from gcode.cli.stats_tables import print_stats
 
-            print_stats(results(), file.name, found)
+        print_stats(results(), file.name, found)

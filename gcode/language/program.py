@@ -6,6 +6,8 @@ expressions the first time that something jumps there.
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator
@@ -235,14 +237,20 @@ def read_program(path: Path | str) -> Program:
     path = Path(path)
     try:
         if not path.is_file():
-            raise _unreadable(path, "not a file" if path.exists() else "no such file")
+            raise _unreadable(path, _why_no_file(path))
         if path.stat().st_size > MAX_BYTES:
             raise _unreadable(path, f"larger than {MAX_BYTES // 2**20} MiB")
         return Program(path.read_bytes(), str(path), path.parent)
     except OSError as error:
-        raise _unreadable(path, error.strerror or str(error)) from None
+        raise _unreadable(path, (error.strerror or str(error)).lower()) from None
+
+
+def _why_no_file(path: Path) -> str:
+    if not path.exists():
+        return os.strerror(errno.ENOENT).lower()
+    return os.strerror(errno.EISDIR).lower() if path.is_dir() else "not a regular file"
 
 
 def _unreadable(path: Path, reason: str) -> GcodeError:
-    problem = f"cannot read the program: {reason}"
-    return GcodeError(Place(file=str(path), line=1), "unreadable-file", problem, "a readable text file")
+    place = Place(file=str(path), line=0)
+    return GcodeError(place, "unreadable-file", f"cannot be read: {reason}", "an NC program")

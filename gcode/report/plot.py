@@ -46,21 +46,21 @@ _TOOLS = ("#1f77b4", "#d95f02", "#2a9d5c", "#c2378f", "#7a5bc4", "#a6761d", "#16
 
 
 class PlotError(Exception):
-    """A picture that cannot be drawn; the text says why."""
+    """A picture that cannot be drawn; the message gives the reason."""
 
 
 def check_picture(out: Path) -> None:
-    """Refuse before the work what cannot be written after it.
+    """Checks the output file of a picture before the work begins.
 
     Raises:
         PlotError: for a name that does not end in one of `SUFFIXES`, a missing folder, and without matplotlib.
     """
     if out.suffix.lower() not in SUFFIXES:
-        raise PlotError(f"{out}: expected a file name that ends in {', '.join(SUFFIXES)}")
+        raise PlotError(f"{out}: unknown kind of image; expected a file name that ends in {', '.join(SUFFIXES)}")
     if not out.absolute().parent.is_dir():
-        raise PlotError(f"{out}: there is no folder {out.parent}")
+        raise PlotError(f"{out}: cannot be written: the folder {out.parent} does not exist")
     if importlib.util.find_spec("matplotlib") is None:
-        raise PlotError("matplotlib, which draws the picture, is not installed; pip install 'machining-twin[plot]'")
+        raise PlotError("matplotlib, which draws the picture, is not installed; pip install matplotlib")
 
 
 def plot_path(
@@ -72,17 +72,19 @@ def plot_path(
     tolerance_mm: float = 0.01,
     title: str = "",
 ) -> None:
-    """Draw the motions among events.
+    """Draws the tool path of a program: rapids dashed, feed motions coloured, all axes to one scale.
 
     Args:
-        out: picture to write, its kind by its ending.
-        view: ``iso``, or the plane that is seen.
-        colour: what the colour of a motion at a feed tells: its height, or its tool.
-        tolerance_mm: how far chords may lie off arcs, mm.
+        events: of the program; only motions are drawn.
+        out: image file to write; its suffix (.png, .svg, .pdf) determines the format.
+        view: ``iso``, or the plane of projection.
+        colour: quantity that colours the feed motions: height (``z``) or ``tool``.
+        tolerance_mm: largest distance of chords from arcs, mm.
         title: above the picture.
 
     Raises:
-        PlotError: without any motion, for what `check_picture` refuses, and where the file cannot be written.
+        PlotError: without any motion, for an unknown suffix, a missing folder, without matplotlib, and where the file
+            cannot be written.
         GcodeError: where the program is refused.
     """
     check_picture(out)

@@ -33,7 +33,7 @@ def read_text(path: Path, suffixes: Iterable[str]) -> str:
         GcodeError: for another ending (``file-kind``), and for a file that cannot be read or is larger than any table
             (``unreadable-file``).
     """
-    place = Place(file=str(path), line=1)
+    place = Place(file=str(path), line=0)
     if path.suffix.lower() not in suffixes:
         problem = f"the name ends in {path.suffix}" if path.suffix else "the name has no ending"
         raise GcodeError(place, "file-kind", problem, f"a file name that ends in {' or '.join(suffixes)}")
@@ -41,10 +41,11 @@ def read_text(path: Path, suffixes: Iterable[str]) -> str:
         with path.open("rb") as handle:
             data = handle.read(LARGEST_BYTES + 1)
     except OSError as error:
-        problem = f"cannot read the file: {error.strerror or error}"
-        raise GcodeError(place, "unreadable-file", problem, "a readable text file") from None
+        problem = f"cannot be read: {(error.strerror or str(error)).lower()}"
+        raise GcodeError(place, "unreadable-file", problem, "a text file") from None
     if len(data) > LARGEST_BYTES:
-        raise GcodeError(place, "unreadable-file", f"more than {LARGEST_BYTES} bytes", "a table of tools or parameters")
+        problem = f"cannot be read: larger than {LARGEST_BYTES // 2**20} MiB"
+        raise GcodeError(place, "unreadable-file", problem, "a table of tools or parameters")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:

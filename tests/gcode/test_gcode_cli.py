@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -68,7 +69,7 @@ def test_motions_are_one_object_a_line(cli: Cli, nc: Path) -> None:
     assert (made[3]["seconds"], made[3]["end"]) == (0.5, [-10.0, 0.0, -1.0])
 
 
-def test_motions_before_a_mistake_are_printed(cli: Cli, tmp_path: Path) -> None:
+def test_motions_before_an_error_are_printed(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "bad.nc"
     path.write_text("G21 G90 G54\nG0 X1\nG1 X2\nG0 X3\nM30\n")
     code, out, err = cli("motions", path)
@@ -112,7 +113,7 @@ def test_the_machines_unit_is_that_of_the_tables_and_not_of_the_program(cli: Cli
 def test_a_clean_program_passes_the_check(cli: Cli, nc: Path) -> None:
     code, out, err = cli("check", nc)
     assert (code, err) == (0, "")
-    assert out == f"{nc}: no mistakes, 1 notice\n"
+    assert out == f"{nc}: no errors, 1 notice\n"
 
 
 def test_notices_are_listed_once_with_their_lines(cli: Cli, tmp_path: Path) -> None:
@@ -121,20 +122,20 @@ def test_notices_are_listed_once_with_their_lines(cli: Cli, tmp_path: Path) -> N
     _, out, _ = cli("check", path, "--notices")
     listed, summary = out.splitlines()
     assert listed.endswith("lines 2, 3, 4, 5, 6, 7, 8, 9 and 4 more")
-    assert summary == f"{path}: no mistakes, 12 notices"
+    assert summary == f"{path}: no errors, 12 notices"
 
 
-def test_mistakes_of_several_files(cli: Cli, nc: Path, tmp_path: Path) -> None:
+def test_errors_of_several_files(cli: Cli, nc: Path, tmp_path: Path) -> None:
     bad = tmp_path / "bad.nc"
     bad.write_text("G21 G90 G54\nG1 X2\nG0 X3 !\nM30\n")
     code, out, _ = cli("check", nc, bad)
     assert code == 1
     assert re.findall(r"\[([\w-]+)\]", out) == ["missing-feed", "unexpected-character"]
     assert f"{bad}:3:7:" in out
-    assert out.splitlines()[-1] == f"{bad}: 2 mistakes"
+    assert out.splitlines()[-1] == f"{bad}: 2 errors"
 
 
-def test_mistakes_as_json(cli: Cli, tmp_path: Path) -> None:
+def test_errors_as_json(cli: Cli, tmp_path: Path) -> None:
     bad = tmp_path / "bad.nc"
     bad.write_text("G21 G90 G54\nG1 X2\nM30\n")
     code, out, _ = cli("check", bad, "--json")
@@ -155,15 +156,16 @@ def test_notices_as_json(cli: Cli, nc: Path) -> None:
 
 def test_files_that_cannot_be_read(cli: Cli, nc: Path, tmp_path: Path) -> None:
     code, out, err = cli("check", tmp_path / "none.nc", nc, tmp_path)
-    assert code == 2
-    assert out == f"{nc}: no mistakes, 1 notice\n"
+    assert code == 1
+    assert out == f"{nc}: no errors, 1 notice\n"
+    rest = "; expected an NC program [unreadable-file]"
     assert err.splitlines() == [
-        f"error: {tmp_path / 'none.nc'}: No such file or directory",
-        f"error: {tmp_path}: Is a directory",
+        f"error: {tmp_path / 'none.nc'}: cannot be read: no such file or directory{rest}",
+        f"error: {tmp_path}: cannot be read: is a directory{rest}",
     ]
 
 
-def test_a_program_is_written_anew_for_another_control(cli: Cli, nc: Path, tmp_path: Path) -> None:
+def test_a_program_is_written_again_for_another_control(cli: Cli, nc: Path, tmp_path: Path) -> None:
     out = tmp_path / "new.ngc"
     assert cli("rewrite", nc, "-o", out, "--to", "linuxcnc", "--units", "inch", "--decimals", 6) == (0, "", "")
     assert out.read_text().startswith("G20 ")
@@ -182,12 +184,12 @@ def test_what_cannot_be_written_leaves_no_file(cli: Cli, nc: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize("command", ["motions", "stats", "plot", "check"])
-def test_tables_with_mistakes_are_named(cli: Cli, nc: Path, tmp_path: Path, command: str) -> None:
+def test_tables_with_errors_are_named(cli: Cli, nc: Path, tmp_path: Path, command: str) -> None:
     table = tmp_path / "t.tbl"
     table.write_text("T1 P1\nT1 Q\n")
     more = ("-o", tmp_path / "p.png") if command == "plot" else ()
     code, out, err = cli(command, nc, "--tool-table", table, *more)
-    assert (code, out) == (2, "")
+    assert (code, out) == (1, "")
     assert err.startswith(f"error: {table}:2:5: ")
     assert err.splitlines()[1:] == ["    T1 Q", "        ^"]
 
@@ -196,28 +198,85 @@ def test_tables_with_mistakes_are_named(cli: Cli, nc: Path, tmp_path: Path, comm
     "arguments",
     [
         ("motions",),
-        ("motions", "none.nc"),
         ("motions", "{nc}", "--dialect", "heidenhain"),
         ("motions", "{nc}", "--machine-units", "cm"),
         ("motions", "{nc}", "--search-path", "none"),
         ("stats", "{nc}", "--rapid-mm-min", "0"),
         ("stats", "{nc}", "--rapid-mm-min", "nan"),
         ("plot", "{nc}"),
-        ("plot", "{nc}", "-o", "p.bmp"),
-        ("plot", "{nc}", "-o", "none/p.png"),
         ("plot", "{nc}", "-o", "p.png", "--view", "zz"),
         ("rewrite", "{nc}"),
-        ("rewrite", "{nc}", "-o", "none/p.nc"),
         ("rewrite", "{nc}", "-o", "p.nc", "--wcs", "G60"),
         ("rewrite", "{nc}", "-o", "p.nc", "--to", "grbl", "--program-number", "5"),
         ("mill", "{nc}"),
+        ("check",),
+        ("--colour",),
     ],
 )
-def test_arguments_that_make_no_command(cli: Cli, nc: Path, arguments: tuple[str, ...]) -> None:
+def test_wrong_use_of_the_command_line_is_one_message(cli: Cli, nc: Path, arguments: tuple[str, ...]) -> None:
     code, out, err = cli(*(a.format(nc=nc) for a in arguments))
+    command = f"gcode {arguments[0]}" if arguments[0] in ("motions", "stats", "plot", "rewrite", "check") else "gcode"
     assert (code, out) == (2, "")
-    assert err
-    assert "Traceback" not in err
+    assert re.fullmatch(rf"error: .+; see '{command} --help'\n", err)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ("motions", "none.nc"),
+            "none.nc: cannot be read: no such file or directory; expected an NC program [unreadable-file]",
+        ),
+        (
+            ("motions", "{nc}", "--settings", "none.toml"),
+            "none.toml: cannot be read: no such file or directory; expected a text file [unreadable-file]",
+        ),
+        (
+            ("plot", "{nc}", "-o", "p.bmp"),
+            "p.bmp: unknown kind of image; expected a file name that ends in .png, .svg, .pdf",
+        ),
+        (("plot", "{nc}", "-o", "none/p.png"), "none/p.png: cannot be written: the folder none does not exist"),
+        (("rewrite", "{nc}", "-o", "none/p.nc"), "none/p.nc: cannot be written: no such file or directory"),
+    ],
+)
+def test_files_that_cannot_be_used_are_one_message(
+    cli: Cli, nc: Path, arguments: tuple[str, ...], message: str
+) -> None:
+    assert cli(*(a.format(nc=nc) for a in arguments)) == (1, "", f"error: {message}\n")
+
+
+def test_no_arguments_print_the_help(cli: Cli) -> None:
+    code, out, err = cli()
+    assert (code, err) == (2, "")
+    assert "Usage: gcode" in out
+
+
+@pytest.mark.parametrize("command", [(), ("check",), ("motions",), ("stats",), ("plot",), ("rewrite",)])
+def test_the_help_names_no_python_types(cli: Cli, command: tuple[str, ...]) -> None:
+    code, out, _ = cli(*command, "--help")
+    assert code == 0
+    assert not re.search(r"<(bool|str|int|float)\b", out)
+
+
+def test_the_versions_are_printed(cli: Cli) -> None:
+    code, out, _ = cli("--version")
+    assert code == 0
+    assert [line.split()[0] for line in out.splitlines()] == ["gcode", "python", "numpy"]
+    assert all(re.search(r" \d+\.\d+", line) for line in out.splitlines())
+
+
+def test_a_shell_can_complete_commands() -> None:
+    asked = {"_GCODE_COMPLETE": "complete_bash", "COMP_WORDS": "gcode che", "COMP_CWORD": "1"}
+    script = "from gcode.cli import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        cwd=ROOT,
+        env={**os.environ, **asked},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == ["check"]
 
 
 def test_text_of_a_program_does_nothing_to_a_terminal(cli: Cli, tmp_path: Path) -> None:
@@ -281,7 +340,7 @@ def test_a_program_without_motions_has_no_picture(cli: Cli, tmp_path: Path) -> N
     path = tmp_path / "none.nc"
     path.write_text("M30\n")
     code, _, err = cli("plot", path, "-o", tmp_path / "p.png")
-    assert (code, err) == (2, "error: none.nc: no motion to draw\n")
+    assert (code, err) == (1, "error: none.nc: no motion to draw\n")
     assert not (tmp_path / "p.png").exists()
 
 
@@ -290,7 +349,7 @@ def test_without_matplotlib_a_picture_is_refused(
 ) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     code, _, err = cli("plot", nc, "-o", tmp_path / "p.png")
-    assert code == 2
+    assert code == 1
     assert "matplotlib" in err
 
 

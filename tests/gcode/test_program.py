@@ -230,7 +230,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(GcodeError) as caught:
         list(interpret_file(path))
     assert str(caught.value) == (
-        f"{path}:1:1: cannot read the program: no such file; expected a readable text file [unreadable-file]"
+        f"{path}: cannot be read: no such file or directory; expected an NC program [unreadable-file]"
     )
 
 
