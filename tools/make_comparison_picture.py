@@ -14,9 +14,8 @@ from twin.arrays import FloatArray
 from twin.comparison.comparison import compare_files
 from twin.comparison.plots import window_waveforms
 from twin.comparison.run_forces import RunForces, read_run_forces
-from twin.comparison.settings import CompareSettings, ReadSettings
 from twin.job import load_job
-from twin.measured import AxisMap
+from twin.measured.settings import CompareSettings
 from twin.simulation.replay import Replay
 from twin.sinks.mcap_sink import McapSink
 
@@ -43,8 +42,8 @@ def main() -> None:
                 sink.write(record)
         rows = synthetic_log(read_run_forces(run))
         np.savetxt(log, rows, delimiter=",", header="Time [s],Fx [N],Fy [N],Fz [N]", comments="", fmt="%.6g")
-        read = ReadSettings(axis_map=AxisMap.parse("x=-Fy,y=-Fx,z=Fz"))
-        found = compare_files(run, log, CompareSettings(windows=((4.0, 4.05),), offset="air", read=read))
+        settings = CompareSettings(map="x=-Fy,y=-Fx,z=Fz", windows=("4.00:4.05",), offset="air")
+        found = compare_files(run, log, settings)
         PICTURE.write_bytes(window_waveforms(found, found.windows[0]))
     print(PICTURE)
 

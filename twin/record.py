@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.settings.force_on import ForceOn
 
-ForceOn: TypeAlias = Literal["tool", "workpiece"]
 CollisionKind: TypeAlias = Literal["rapid", "shank", "holder", "spindle-stopped"]
 
 

@@ -25,7 +25,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"program__file": 3}, "program.file = 3: expected a file name (NC program, relative to the job file's folder)"),
     (
         {"program__block_delete": 1},
-        "program.block_delete = 1: expected true or false (block delete switch: true leaves out the blocks that begin "
+        "program.block_delete = 1: expected true or false (block delete switch: true skips the blocks that begin "
         "with /)",
     ),
     ({"program__tool": 3}, "program.tool = 3: expected 0 or the number of a tool: 1, 7"),
@@ -48,19 +48,25 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"machine__offsets__G55": [0, 0]}, "machine.offsets.G55 = [0, 0]: expected a list of three numbers"),
     ({"machine__offsets__G55": [0, "1", 0]}, 'machine.offsets.G55[1] = "1": expected a number'),
     ({"stock__wcs": "G55"}, 'stock.wcs = "G55": expected one of the offsets in machine.offsets: G54'),
-    ({"measured": {"map": "w=Fx"}}, 'measured.map = "w=Fx": expected e.g. x=-Fy,y=-Fx,z=Fz'),
-    ({"measured": {"windows": ["4:3"]}}, 'measured.windows[0] = "4:3": expected an end behind its begin, 4 s'),
+    (
+        {"measured": {"map": "w=Fx"}},
+        "measured.map = \"w=Fx\": 'w=Fx' is not axis = column, expected e.g. x=-Fy,y=-Fx,z=Fz",
+    ),
+    (
+        {"measured": {"windows": ["4:3"]}},
+        'measured.windows[0] = "4:3": ends at 3 s, expected an end after its beginning, 4 s',
+    ),
     (
         {"measured": {"offset": "soon"}},
         'measured.offset = "soon": expected air, none, BEGIN:END in seconds of the log, or X,Y,Z in N',
     ),
     (
         {"measured": {"columns": 3}},
-        "measured.columns = 3: expected a list of texts (names of all columns, with units, in place of the file's own)",
+        "measured.columns = 3: expected a list of texts (names of all columns, with units, e.g. t_s,Fx_N,Fy_N,Fz_N)",
     ),
     (
-        {"measured": {"lag_s": "auto"}},
-        'measured.lag_s = "auto": expected a number (how late the log is, s; found by cross-correlation if not given)',
+        {"measured": {"lag_s": "soon"}},
+        'measured.lag_s = "soon": expected auto or seconds, e.g. 0.0123',
     ),
     ({"stock": {}}, "stock is empty: expected exactly one of box_mm, cylinder_mm, stl"),
     (
@@ -89,8 +95,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ),
     (
         {"tools__0__helix_deg": 90},
-        "tools[0].helix_deg (tool 1) = 90: expected a number above -90 and below 90 (helix angle, right hand positive; "
-        "at 90 a flute would not rise)",
+        "tools[0].helix_deg (tool 1) = 90: expected a number above -90 and below 90 (helix angle, right-hand positive)",
     ),
     (
         {"tools__0__flute_length_mm": NOTHING},
@@ -128,7 +133,11 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
         "tools[1].pitch_deg (tool 7) = [170, 180]: expected angles above 0 that sum to 360, got 350",
     ),
     ({"tools__1__runout_mm": 8}, "tools[1].runout_mm (tool 7) = 8: expected below 8, half the diameter"),
-    ({"tools__1__holder": 3}, "tools[1].holder (tool 7) = 3: expected a list of tables (holder above that, upwards)"),
+    (
+        {"tools__1__holder": 3},
+        "tools[1].holder (tool 7) = 3: expected a list of tables (holder above the shank, upwards: list of "
+        "{ diameter_mm, length_mm })",
+    ),
     (
         {"tools__1__holder__1__diameter_mm": 0},
         "tools[1].holder[1].diameter_mm (tool 7) = 0: expected a number above 0 (diameter, mm)",
@@ -136,11 +145,11 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"cutting__Kae": NOTHING}, "cutting.Kae: missing; expected a number (axial, per edge length, N/mm)"),
     (
         {"cutting__source": "  "},
-        'cutting.source = "  ": expected text that is not empty (where the coefficients come from)',
+        'cutting.source = "  ": expected text that is not empty (source of the coefficients)',
     ),
     (
         {"cutting__convention": "helical"},
-        'cutting.convention = "helical": expected one of "meridian" (length that the edge terms count: along the '
+        'cutting.convention = "helical": expected one of "meridian" (edge length of the edge terms: along the '
         "tool's meridian)",
     ),
     ({"simulation__slice_pich_mm": 0.1}, "simulation.slice_pich_mm: unknown key; did you mean slice_pitch_mm?"),
@@ -159,8 +168,8 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"output__mcap": "run.bag"}, 'output.mcap = "run.bag": expected a file name that ends in .mcap'),
     (
         {"output__force_on": "part"},
-        'output.force_on = "part": expected one of "tool", "workpiece" (body that feels the forces in summary and '
-        "export)",
+        'output.force_on = "part": expected one of "tool", "workpiece" (body that the forces in summary and '
+        "export act on)",
     ),
     ({"cuttings": {}}, "cuttings: unknown key; did you mean cutting?"),
     (

@@ -13,7 +13,7 @@ from twin.archive.container.partial import partial_path, reason
 from twin.archive.force_table import force_schema, force_tables
 from twin.archive.reader import read_run
 from twin.errors import ArchiveError
-from twin.record import ForceOn
+from twin.settings.force_on import ForceOn
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from twin.record import ForceOn, Record, Step
+from twin.record import Record, Step
+from twin.settings.force_on import ForceOn
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -6,16 +6,19 @@ import functools
 import inspect
 from collections.abc import Callable, Collection, Mapping
 from pathlib import PurePath
-from typing import Any, Literal, get_args, get_origin
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 import typer
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from rich.markup import escape
 
+from twin.errors import SettingsError
+from twin.settings.check import checked
 from twin.settings.keys import bare, default_text, key_of, option_names, without_unit
 
 Command = Callable[..., None]
+_Model = TypeVar("_Model", bound=BaseModel)
 _METAVARS: dict[type, str] = {bool: "", int: "N", float: "NUMBER", str: "TEXT", PurePath: "FILE"}
 
 
@@ -136,3 +139,29 @@ def type_metavar(annotation: Any) -> str | None:
 def option_of(model: type[BaseModel], key: str) -> str:
     """The option that gives a key: ``--feed`` for ``feed_mm_min``."""
     return option_names(key, model.model_fields[key])[0].split("/")[0]
+
+
+def settings_from(
+    model: type[_Model], options: Mapping[str, Any], base: Mapping[str, Any], source: str, command: str
+) -> _Model:
+    """Settings from a command's options and, where these are not given, from a file.
+
+    Args:
+        options: values by key, as `options_from` gives them.
+        base: values of a file, by key.
+        source: the file, for the message.
+        command: the command, for the message where only options are wrong.
+
+    Raises:
+        SettingsError: every mistake, with the option or the file's key.
+    """
+    try:
+        named = functools.partial(_named, model, options)
+        return checked(model, {**base, **options}, source, name=named)
+    except SettingsError as error:
+        own = all(problem.startswith("--") for problem in error.problems)
+        raise SettingsError(command if own else source, error.problems) from None
+
+
+def _named(model: type[BaseModel], options: Mapping[str, Any], key: str) -> str:
+    return option_of(model, key) if key in options else key

@@ -8,9 +8,9 @@ import numpy as np
 
 from twin.comparison.align import FAR_RIVALS, Delay, better_axes, find_delay
 from twin.comparison.run_forces import RunForces
-from twin.comparison.settings import CompareSettings
 from twin.errors import CompareError
 from twin.measured.log import AXES, ForceLog, Gap
+from twin.measured.settings import CompareSettings
 from twin.measured.spindle import SpindleSpeed
 
 #: Forces that differ by this factor or its inverse are in another unit.
@@ -40,7 +40,7 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
                 f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, "
                 f"expected about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any makes it a warning"
             )
-            if settings.read.unit is None:
+            if settings.unit is None:
                 raise CompareError(text)
             yield text
 
@@ -109,7 +109,7 @@ def check_fit(run: RunForces, log: ForceLog, score: float, likeness: float, sett
             f"{log.source}: likeness {likeness:.2f}, means included; {better:.2f} with {turned} of the log as it is "
             f"mapped now: try {_hint(axes, log, settings)}"
         )
-    elif settings.lag != "auto" and better > max(likeness, 0.0) + _FAR_BETTER:
+    elif settings.lag_s is not None and better > max(likeness, 0.0) + _FAR_BETTER:
         found = find_delay(run, log)
         yield (
             f"{log.source}: correlation {score:.2f} with the lag given, {found.score:.2f} with {found.lag_s:.6f} s: "
@@ -122,7 +122,7 @@ def check_fit(run: RunForces, log: ForceLog, score: float, likeness: float, sett
 def _hint(axes: dict[str, str], log: ForceLog, settings: CompareSettings) -> str:
     """The option that turns the axes as they fit."""
     if all(axes[a] == f"-{a}" for a in AXES):
-        other = "workpiece" if settings.read.force_on == "tool" else "tool"
+        other = "workpiece" if settings.force_on == "tool" else "tool"
         return f"--force-on {other}"
     channels = dict(zip(AXES, log.channels, strict=True))
     parts = []

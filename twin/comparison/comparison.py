@@ -16,11 +16,11 @@ from twin.comparison.harmonics import Line, lines
 from twin.comparison.metrics import AxisErrors, axis_errors
 from twin.comparison.phase import best_shift
 from twin.comparison.run_forces import RunForces, read_run_forces
-from twin.comparison.settings import CompareSettings
 from twin.errors import CompareError
-from twin.measured import force_log, read_log
 from twin.measured.filters import filtered
+from twin.measured.forces import read_forces
 from twin.measured.log import AXES, Correction, ForceLog, Gap
+from twin.measured.settings import CompareSettings
 from twin.measured.spindle import SpindleSpeed, spindle_speed
 from twin.measured.uniform import outside_gaps, resample, uniform
 from twin.measured.zero import offset_of, remove_drift, shift_zero
@@ -95,17 +95,7 @@ def compare_files(run: str | PathLike[str], measured: str | PathLike[str], setti
     Raises:
         ArchiveError, MeasuredError, CompareError: a file that cannot be read, or the two do not fit.
     """
-    how = settings.read
-    raw = read_log(
-        measured,
-        rate_hz=how.rate_hz,
-        columns=how.columns,
-        delimiter=how.delimiter,
-        decimal=how.decimal,
-        group=how.group,
-        rpm=how.rpm,
-    )
-    log = force_log(raw, how.axis_map, force_on=how.force_on, unit=how.unit)
+    log = read_forces(measured, settings)
     return compare(read_run_forces(Path(run)), log, settings)
 
 
@@ -126,7 +116,7 @@ def compare(run: RunForces, log: ForceLog, settings: CompareSettings) -> Compari
         warnings += [*checks.check_rate(log, rpm, teeth), *checks.check_speed(log, speed, rpm)]
     log = _in_band(log, settings)
     lag_s, delay = _lag(run, log, settings)
-    if settings.drift or settings.offset != "none":
+    if settings.drift or settings.zero != "none":
         log = _zeroed(run, log, lag_s, settings)
         if settings.drift and delay is not None:
             lag_s, delay = _lag(run, log, settings)
@@ -165,9 +155,9 @@ def _in_band(log: ForceLog, settings: CompareSettings) -> ForceLog:
 
 
 def _lag(run: RunForces, log: ForceLog, settings: CompareSettings) -> tuple[float, Delay | None]:
-    if settings.lag != "auto":
-        return settings.lag, None
-    delay = find_delay(run, log, settings.lag_within_s, settings.windows)
+    if settings.lag_s is not None:
+        return settings.lag_s, None
+    delay = find_delay(run, log, settings.lag_within_s, settings.spans)
     return delay.lag_s, delay
 
 
@@ -183,7 +173,7 @@ def _lag_record(lag_s: float, delay: Delay | None) -> Correction:
 
 def _zeroed(run: RunForces, log: ForceLog, lag_s: float, settings: CompareSettings) -> ForceLog:
     """The amplifier's zero or line taken away."""
-    offset = settings.offset
+    offset = settings.zero
     if isinstance(offset, tuple) and len(offset) == 3:
         log = shift_zero(log, offset)
         if not settings.drift:
@@ -259,7 +249,7 @@ def _score(both: _Both, log: ForceLog, *, centred: bool = True) -> float:
 def _windows(
     run: RunForces, log: ForceLog, both: _Both, overlap: Gap, settings: CompareSettings
 ) -> Iterator[WindowResult]:
-    for span in settings.windows or (overlap,):
+    for span in settings.spans or (overlap,):
         inside = (both.t_s >= span[0]) & (both.t_s <= span[1])
         if inside.sum() < 2:
             raise CompareError(
@@ -289,7 +279,7 @@ def _window(
     found = lines(log.axes, t_s, measured[:, axes], simulated[:, axes], rpm, teeth or 1) if rpm else []
     return WindowResult(
         span_s=span,
-        whole=not settings.windows,
+        whole=not settings.spans,
         t_s=t_s,
         measured_n=measured,
         simulated_n=simulated,

@@ -14,7 +14,6 @@ from twin.errors import CompareError, IdentifyError, MeasuredError
 from twin.identification.cuts.axes_hint import other_axes
 from twin.identification.cuts.cuts_file import Cut, Cuts, Method
 from twin.identification.cuts.measure import Measured, given_mean, log_of, measure, straight_window
-from twin.identification.cuts.steady import find_cut
 from twin.identification.doubts import LEAST_FIT, doubts
 from twin.identification.estimate import Estimate, fixed_values
 from twin.identification.means import START, equations, fit_means, search_means
@@ -23,7 +22,8 @@ from twin.identification.models.model import Model, pass_model
 from twin.identification.models.straight import reach_mm
 from twin.identification.result import CutResult, Identified, Runout
 from twin.identification.waveform import Waveforms, fit_waveforms, measured_harmonics
-from twin.measured import ForceLog
+from twin.measured.log import ForceLog
+from twin.measured.steady import find_cut
 from twin.measured.uniform import uniform
 
 

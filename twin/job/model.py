@@ -1,7 +1,7 @@
-"""The keys of a job file, one model a table; frozen, strict, and with a word on each key.
+"""The keys of a job file, one model for each table; frozen, strict, and with a description of each key.
 
-The descriptions are part of the error messages and of the JSON Schema. What concerns more than one key is in
-`twin.job.rules`, so that it is checked even where another key is wrong.
+The descriptions are part of the error messages, of the JSON Schema and of the page. Rules between keys are in
+`twin.job.rules`, so that they are checked even where another key is wrong.
 """
 
 from __future__ import annotations
@@ -12,12 +12,15 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import ConfigDict, Field, Strict
 
 from twin.errors import JobError
-from twin.record import ForceOn
+from twin.measured.settings import CompareSettings, LogFile
+from twin.settings.force_on import ForceOn
 from twin.settings.schema import toml_schema
-from twin.settings.table import FilePath, Point, Table
+from twin.settings.table import FilePath, Key, Point, Table
 
 #: The keys of a stock, of which one is given.
 STOCKS = ("box_mm", "cylinder_mm", "stl")
+SixNumbers: TypeAlias = Annotated[tuple[float, float, float, float, float, float], Strict(False)]
+Rows: TypeAlias = Annotated[tuple[Annotated[tuple[float, ...], Strict(False)], ...], Strict(False)]
 WorkOffset: TypeAlias = Literal["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"]
 
 
@@ -29,18 +32,19 @@ class Program(Table):
         default="fanuc", description="control that the program is written for"
     )
     arc_centres: Literal["incremental", "absolute"] = Field(
-        default="incremental", description="whether I, J, K are measured from the arc's start or are coordinates"
+        default="incremental", description="I, J, K from the arc's start, or as coordinates"
     )
     block_delete: bool = Field(
-        default=False, description="block delete switch: true leaves out the blocks that begin with /"
+        default=False, description="block delete switch: true skips the blocks that begin with /"
     )
-    units: Literal["mm", "inch"] = Field(default="mm", description="units until the program says G20 or G21")
+    units: Literal["mm", "inch"] = Field(default="mm", description="units until the program has G20 or G21")
     tool: int = Field(default=0, ge=0, description="tool in the spindle when the program starts, 0 for none")
     search_path: list[FilePath] = Field(
-        default_factory=list, description="folders of subprogram files, searched after the program's own"
+        default_factory=list, description="folders of subprogram files, searched after the program's own folder"
     )
     decimal_point: Literal["calculator", "increment"] = Field(
-        default="calculator", description="X100 without a point: 100 mm, or 100 least increments of 0.001 mm"
+        default="calculator",
+        description="X100 without a decimal point: 100 mm (calculator), or 100 times 0.001 mm (increment)",
     )
     compensation_startup: Literal["A", "B"] = Field(
         default="A", description="type of start-up and cancel of cutter compensation on FANUC and Haas"
@@ -48,18 +52,19 @@ class Program(Table):
 
 
 class Machine(Table):
-    """The machine and its set-up. Points are places of the gauge point in machine coordinates."""
+    """The machine and its setup. Points are positions of the gauge point in machine coordinates."""
 
     rapid_mm_min: float = Field(default=48000.0, gt=0.0, description="speed along the path of rapid motions, mm/min")
     tool_change_s: float = Field(default=0.0, ge=0.0, description="time of one tool change, s")
-    home_mm: Point | None = Field(
-        default=None, description="gauge point at the reference point of G28; above the stock if not given"
+    home_mm: Annotated[Point | None, Key(unset="above the stock")] = Field(
+        default=None, description="gauge point at the reference point of G28, mm"
     )
-    start_mm: Point | None = Field(
-        default=None, description="gauge point when the program starts; the reference point if not given"
+    start_mm: Annotated[Point | None, Key(unset="the reference point")] = Field(
+        default=None, description="gauge point when the program starts, mm"
     )
     offsets: dict[WorkOffset, Point] = Field(
-        default={"G54": (0.0, 0.0, 0.0)}, description="work offsets: places of the work zeros, machine coordinates, mm"
+        default={"G54": (0.0, 0.0, 0.0)},
+        description="work offsets, G54 to G59 and G59.1 to G59.3: positions of the work zeros, mm; none but these",
     )
 
 
@@ -87,12 +92,14 @@ class Stock(Table):
 
     model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": [key]} for key in STOCKS]})
 
-    box_mm: Box | None = Field(default=None, description="a box")
-    cylinder_mm: Cylinder | None = Field(default=None, description="a cylinder")
+    box_mm: Box | None = Field(default=None, description="box: { min = [x, y, z], max = [x, y, z] }, mm")
+    cylinder_mm: Cylinder | None = Field(
+        default=None, description='cylinder: { axis = "z", centre = [x, y], diameter = 50, min = -20, max = 0 }, mm'
+    )
     stl: FilePath | None = Field(
         default=None, description="STL file of a closed solid, relative to the job file's folder"
     )
-    stl_scale: float = Field(default=1.0, gt=0.0, description="mm a unit of the STL file, 25.4 for inches")
+    stl_scale: float = Field(default=1.0, gt=0.0, description="length of one unit of the STL file, mm; 25.4 for inches")
     offset_mm: Point = Field(default=(0.0, 0.0, 0.0), description="added to the STL file's points after scaling, mm")
     wcs: WorkOffset = Field("G54", description="work offset that the stock's coordinates are given in")
 
@@ -113,15 +120,15 @@ class Cutting(Table):
     Kre: float = Field(description="radial, per edge length, N/mm")
     Kac: float = Field(description="axial, per chip area, N/mm2")
     Kae: float = Field(description="axial, per edge length, N/mm")
-    source: str = Field(min_length=1, pattern=r"\S", description="where the coefficients come from")
+    source: str = Field(min_length=1, pattern=r"\S", description="source of the coefficients")
     convention: Literal["meridian"] = Field(
-        default="meridian", description="length that the edge terms count: along the tool's meridian"
+        default="meridian", description="edge length of the edge terms: along the tool's meridian"
     )
-    standard_errors: Annotated[tuple[float, float, float, float, float, float], Strict(False)] | None = Field(
-        default=None, description="standard errors of Ktc, Kte, Krc, Kre, Kac, Kae; kept with the run, not used"
+    standard_errors: Annotated[SixNumbers | None, Key(unset="none")] = Field(
+        default=None, description="standard errors of Ktc, Kte, Krc, Kre, Kac, Kae; archived with the run, not used"
     )
-    correlation: Annotated[tuple[Annotated[tuple[float, ...], Strict(False)], ...], Strict(False)] | None = Field(
-        default=None, description="correlation of these errors, six rows of six; kept with the run, not used"
+    correlation: Annotated[Rows | None, Key(unset="none")] = Field(
+        default=None, description="correlation of these errors, six rows of six; archived with the run, not used"
     )
 
 
@@ -129,89 +136,80 @@ class Tool(Table):
     """A tool: cutting part, then shank, then holder, upwards from the tip."""
 
     number: int = Field(ge=1, description="tool number, the T word")
-    name: str = Field(default="", description="a name for people")
+    name: str = Field(default="", description="human-readable name")
     kind: Literal["flat", "ball", "bull", "taper"] = Field(description="shape of the cutting part")
     diameter_mm: float = Field(gt=0.0, description="diameter of the cutting part; of a taper tool's tip")
     teeth: int = Field(ge=1, le=100, description="number of flutes")
-    helix_deg: float = Field(
-        default=0.0, gt=-90.0, lt=90.0, description="helix angle, right hand positive; at 90 a flute would not rise"
-    )
+    helix_deg: float = Field(default=0.0, gt=-90.0, lt=90.0, description="helix angle, right-hand positive")
     flute_length_mm: float = Field(gt=0.0, description="height of the cutting part above the tip")
-    corner_radius_mm: float | None = Field(default=None, gt=0.0, description="corner radius of a bull or taper tool")
-    taper_deg: float | None = Field(default=None, gt=0.0, lt=90.0, description="half angle of a taper tool")
+    corner_radius_mm: float | None = Field(
+        default=None, gt=0.0, description="corner radius: required for bull, optional for taper, not for other kinds"
+    )
+    taper_deg: float | None = Field(
+        default=None, gt=0.0, lt=90.0, description="half angle: required for taper, not for other kinds"
+    )
     length_mm: float = Field(
         default=0.0, ge=0.0, description="gauge length: from the tip to the gauge point, the H entry"
     )
-    pitch_deg: Annotated[tuple[float, ...], Strict(False)] | None = Field(
-        default=None, description="angle from each tooth to the next, one a tooth, 360 in all"
+    pitch_deg: Annotated[Annotated[tuple[float, ...], Strict(False)] | None, Key(unset="constant pitch")] = Field(
+        default=None, description="variable pitch: angles from each tooth to the next, one per tooth, 360 in total"
     )
-    runout_mm: float = Field(default=0.0, ge=0.0, description="distance of the cutter's axis from the spindle's")
+    runout_mm: float = Field(default=0.0, ge=0.0, description="distance of the cutter's axis from the spindle's, mm")
     runout_angle_deg: float = Field(default=0.0, description="direction of the runout, from the tip of the first tooth")
-    shank: RigidPart | None = Field(default=None, description="shank above the flutes")
-    holder: Annotated[tuple[RigidPart, ...], Strict(False)] = Field(
-        default=(), description="holder above that, upwards"
+    shank: Annotated[RigidPart | None, Key(unset="none")] = Field(
+        default=None, description="shank above the flutes: { diameter_mm, length_mm }"
     )
-    cutting: Cutting | None = Field(
-        default=None, description="coefficients for this tool instead of those of [cutting]"
+    holder: Annotated[tuple[RigidPart, ...], Strict(False), Key(unset="none")] = Field(
+        default=(), description="holder above the shank, upwards: list of { diameter_mm, length_mm }"
+    )
+    cutting: Annotated[Cutting | None, Key(unset="those of [cutting]")] = Field(
+        default=None, description="coefficients for this tool"
     )
 
 
 class Simulation(Table):
-    """How finely the replay is computed."""
+    """Resolution of the replay."""
 
-    slice_pitch_mm: float = Field(default=0.1, gt=0.0, description="distance of the slices in all three directions")
+    slice_pitch_mm: float = Field(
+        default=0.1,
+        gt=0.0,
+        description="distance of the slices; at most the thinnest tool's diameter",
+    )
     step_mm: float = Field(default=0.1, gt=0.0, description="longest step along a motion")
-    angle_step_deg: float = Field(default=1.0, gt=0.0, le=360.0, description="spindle angle between force samples")
+    angle_step_deg: float = Field(
+        default=1.0, gt=0.0, le=360.0, description="spindle angle between force samples; divides 360"
+    )
     axial_step_mm: float = Field(default=0.1, gt=0.0, description="height of a cutting edge element")
     engagement: Literal["majority", "any"] = Field(
         default="majority",
-        description="how many of the three slices must hold an edge point: two, or one as in the paper",
+        description="slices of three that must hold an edge point: two (majority), or one (any), the paper's rule",
     )
-    store: Literal["fast", "reference"] = Field(default="fast", description="implementation of the slices")
-    preview_pitch_mm: float | None = Field(
-        default=None, gt=0.0, description="cell size of the drawn workpiece; suits the stock if not given"
+    store: Literal["fast", "reference"] = Field(
+        default="fast", description="implementation of the slices: column cells (fast), or plain polygons (reference)"
+    )
+    preview_pitch_mm: Annotated[float | None, Key(unset="to suit the stock")] = Field(
+        default=None, gt=0.0, description="cell size of the drawn workpiece, mm"
     )
 
 
 class Output(Table):
-    """Where the run goes."""
+    """Outputs of the run."""
 
-    mcap: FilePath | None = Field(
+    mcap: Annotated[FilePath | None, Key(unset="none")] = Field(
         default=None, description="archive of the run (.mcap), relative to the job file's folder"
     )
-    rrd: FilePath | None = Field(default=None, description="rerun recording (.rrd), relative to the job file's folder")
-    force_on: ForceOn = Field(default="tool", description="body that feels the forces in summary and export")
+    rrd: Annotated[FilePath | None, Key(unset="none")] = Field(
+        default=None, description="rerun recording (.rrd), relative to the job file's folder"
+    )
+    force_on: ForceOn = Field(default="tool", description="body that the forces in summary and export act on")
 
 
-class Measured(Table):
-    """A measured force log of this program, for comparisons: how it is read."""
-
-    file: FilePath | None = Field(default=None, description="the log, relative to the job file's folder")
-    map: str | None = Field(
-        default=None, min_length=1, description="columns for the axes with their signs, e.g. x=-Fy,y=-Fx,z=Fz"
-    )
-    force_on: ForceOn = Field(default="tool", description="body that the mapped force acts on")
-    columns: Annotated[tuple[str, ...], Strict(False)] | None = Field(
-        default=None, description="names of all columns, with units, in place of the file's own"
-    )
-    unit: str | None = Field(
-        default=None, min_length=1, description="unit of the forces, where the file does not say it"
-    )
-    rate_hz: float | None = Field(default=None, gt=0.0, description="sampling rate, where the file does not say it, Hz")
-    delimiter: str | None = Field(default=None, description="delimiter of a text file")
-    decimal: Literal[".", ","] | None = Field(default=None, description="decimal mark of a text file")
-    group: str | None = Field(default=None, min_length=1, description="group, variable or topic in the file")
-    lag_s: float | None = Field(
-        default=None, description="how late the log is, s; found by cross-correlation if not given"
-    )
-    offset: str = Field(default="none", description="zero of the amplifier: none, air, BEGIN:END or X,Y,Z")
-    windows: Annotated[tuple[str, ...], Strict(False)] = Field(
-        default=(), description="windows of the comparison on the run's clock, BEGIN:END in s"
-    )
+class Measured(CompareSettings, LogFile):
+    """A measured force log of this program: where it is, how it is read, corrected, and compared with the run."""
 
 
 class JobFile(Table):
-    """A replay: NC program, machine, stock, tools, cutting coefficients, fineness and outputs."""
+    """A replay: NC program, machine, stock, tools, cutting coefficients, resolution and outputs."""
 
     program: Program = Field(description="the NC program")
     machine: Machine = Field(default_factory=Machine, description="the machine")
@@ -222,8 +220,8 @@ class JobFile(Table):
     cutting: Cutting | None = Field(
         default=None, description="cutting coefficients; without them no forces are computed"
     )
-    simulation: Simulation = Field(default_factory=Simulation, description="how finely the replay is computed")
-    output: Output = Field(default_factory=Output, description="where the run goes")
+    simulation: Simulation = Field(default_factory=Simulation, description="resolution of the replay")
+    output: Output = Field(default_factory=Output, description="outputs of the run")
     measured: Measured | None = Field(default=None, description="a measured log to compare the run with")
 
 

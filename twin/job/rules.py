@@ -6,13 +6,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeAlias
 
-from twin.errors import MeasuredError
 from twin.job.facts import Facts
 from twin.job.model import STOCKS
 from twin.job.tool_rules import TOOL_RULES
-from twin.measured.axes import AxisMap
-from twin.measured.spans import parse_offset, parse_window
-from twin.settings.problems import Location, Problem, wrong
+from twin.settings.problems import Problem, wrong
 
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
 
@@ -155,24 +152,6 @@ def outputs_named_rightly(facts: Facts, _folder: Path) -> Iterator[Problem]:
             yield wrong(("output", key), name, f"a file name that ends in .{key}")
 
 
-def measured_is_sound(facts: Facts, _folder: Path) -> Iterator[Problem]:
-    """Axis map, zero and windows of the measured log can be understood."""
-    checks: tuple[tuple[str, Callable[[str], object]], ...] = (("map", AxisMap.parse), ("offset", parse_offset))
-    for key, parse in checks:
-        text = facts.get("measured", key)
-        yield from _understood(("measured", key), text, parse)
-    for index in range(facts.count("measured", "windows")):
-        yield from _understood(("measured", "windows", index), facts.get("measured", "windows", index), parse_window)
-
-
-def _understood(location: Location, text: str | None, parse: Callable[[str], object]) -> Iterator[Problem]:
-    try:
-        if text is not None:
-            parse(text)
-    except MeasuredError as error:
-        yield wrong(location, text, str(error).rpartition("expected ")[2])
-
-
 RULES: tuple[Rule, ...] = (
     files_are_there,
     one_stock,
@@ -187,5 +166,4 @@ RULES: tuple[Rule, ...] = (
     slices_countable,
     angle_divides_turn,
     outputs_named_rightly,
-    measured_is_sound,
 )

@@ -47,7 +47,7 @@ class AxisMap:
         """A map from its text.
 
         Raises:
-            MeasuredError: no map: the message names the part that is none.
+            MeasuredError: not a map: the message names the wrong part.
         """
         found: dict[str, str] = {}
         for part in _parts(text):
@@ -55,7 +55,7 @@ class AxisMap:
             axis = axis.lower().removeprefix("f")
             if not equals or axis not in AXES or not column.strip("+- "):
                 raise MeasuredError(
-                    f"axis map {text!r}: {part.strip()!r} is no axis = column, expected e.g. {_EXAMPLE}"
+                    f"axis map {text!r}: {part.strip()!r} is not axis = column, expected e.g. {_EXAMPLE}"
                 )
             if axis in found:
                 raise MeasuredError(f"axis map {text!r}: {axis} is given twice, expected e.g. {_EXAMPLE}")

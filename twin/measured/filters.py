@@ -85,6 +85,22 @@ class Filter:
         return np.asarray(signal.tf2sos(b, a))
 
 
+def parse_notch(text: str, phase: Phase = "zero") -> Filter:
+    """``700`` or ``700:20``: centre frequency, and quality (centre frequency divided by width).
+
+    Raises:
+        MeasuredError: not numbers above 0.
+    """
+    centre, _, quality = text.partition(":")
+    try:
+        made = Filter(kind="notch", hz=float(centre), quality=float(quality or 30.0), phase=phase)
+    except ValueError:
+        raise MeasuredError(f"notch {text!r}: expected HZ or HZ:QUALITY, e.g. 700:30") from None
+    if not made.hz > 0.0 or not made.quality > 0.0:
+        raise MeasuredError(f"notch {text!r}: expected numbers above 0, e.g. 700:30")
+    return made
+
+
 def filtered(log: ForceLog, with_filter: Filter) -> ForceLog:
     """The log, filtered piece by piece between its gaps.
 

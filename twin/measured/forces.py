@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from os import PathLike
 
 import numpy as np
 
@@ -11,36 +12,37 @@ from twin.arrays import FloatArray, frozen
 from twin.errors import MeasuredError
 from twin.measured.axes import AxisMap, Term, aliases, guess_map
 from twin.measured.log import AXES, Channel, ForceLog, RawLog, gaps_of, vector
+from twin.measured.read import read_log
+from twin.measured.settings import AS_IN_FILE, LogReading
 from twin.measured.units import ANGLE_NAME, find_unit
-from twin.record import ForceOn
 
 _TRIGGER = re.compile(r"trig|tacho|pulse|once|key[\s_]*phas|\bindex\b|z[\s_]*phase|marker", re.IGNORECASE)
 
 
-def force_log(
-    raw: RawLog,
-    axis_map: AxisMap | None = None,
-    *,
-    force_on: ForceOn = "tool",
-    unit: str | None = None,
-    spindle: str | None = None,
-    trigger: str | None = None,
-) -> ForceLog:
+def read_forces(path: str | PathLike[str], reading: LogReading = AS_IN_FILE) -> ForceLog:
+    """Forces on the tool from a log of any known format.
+
+    Raises:
+        MeasuredError: see `twin.measured.read.read_log` and `force_log`.
+    """
+    return force_log(read_log(path, reading), reading)
+
+
+def force_log(raw: RawLog, reading: LogReading = AS_IN_FILE) -> ForceLog:
     """Forces on the tool in machine axes.
 
     The map is applied first: it gives the force on the body ``force_on`` in machine axes. Where that is the workpiece,
     all three signs are then turned. A map that already holds the turn goes with ``force_on="tool"``.
 
     Args:
-        axis_map: None takes the columns that are named after the axes.
-        force_on: the body that the mapped force acts on.
-        unit: unit of the force columns where the file does not say it, or to overrule the file.
-        spindle, trigger: column of the spindle angle and of a once-per-revolution pulse; found by name if not given.
+        reading: axis map (without one the columns that are named after the axes), body that the mapped force acts on,
+            unit of the force columns, columns of the spindle angle and of a once-per-revolution pulse.
 
     Raises:
         MeasuredError: columns that cannot be decided, are unknown, or are in no unit of force.
     """
-    axis_map, notes = _map_for(raw, axis_map)
+    unit, force_on = reading.unit, reading.force_on
+    axis_map, notes = _map_for(raw, reading.axis_map)
     names = aliases(raw.columns)
     terms = axis_map.terms(names)
     used = dict.fromkeys(column for parts in terms.values() for _, column in parts)
@@ -67,9 +69,9 @@ def force_log(
     if missing := [a for a in AXES if a not in terms]:
         notes.append(f"not measured: {', '.join(missing)}")
     t_s = raw.t_s[rows]
-    angle, more = _angle(raw, names, rows, spindle, used)
+    angle, more = _angle(raw, names, rows, reading.angle_column, used)
     notes += more
-    pulses, more = _trigger(raw, names, trigger, used)
+    pulses, more = _trigger(raw, names, reading.trigger_column, used)
     return ForceLog(
         t_s=vector(t_s, "t_s"),
         force_n=frozen(force, "force_n", (None, 3)),

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 
 from twin.arrays import FloatArray, frozen
-from twin.record import ForceOn
+from twin.settings.force_on import ForceOn
 
 #: First and last moment that a gap lies between, s.
 Gap: TypeAlias = tuple[float, float]

@@ -1,4 +1,4 @@
-"""One door for all formats of measured logs."""
+"""One entry for all formats of measured logs."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 from twin.errors import MeasuredError
 from twin.measured.formats.table import Table
 from twin.measured.log import RawLog
+from twin.measured.settings import AS_IN_FILE, LogReading
 from twin.measured.timing import raw_log
 
 _MCAP_MAGIC = b"\x89MCAP"
@@ -19,25 +20,11 @@ _MATLAB_MAGIC = b"MATLAB "
 _ZIP_MAGIC = b"PK\x03\x04"
 
 
-def read_log(
-    path: str | PathLike[str],
-    *,
-    rate_hz: float | None = None,
-    columns: Sequence[str] | None = None,
-    delimiter: str | None = None,
-    decimal: str | None = None,
-    group: str | None = None,
-    rpm: float | None = None,
-) -> RawLog:
-    """Read a measured log of any known format; the format is told by what the file holds, not by its suffix.
+def read_log(path: str | PathLike[str], reading: LogReading = AS_IN_FILE) -> RawLog:
+    """Read a measured log of any known format; the format is determined by the content, not by the suffix.
 
     Args:
-        rate_hz: sampling rate where the file does not say it, or to overrule it.
-        columns: names for all columns, with units (``t_s,Fx_N,Fy_N,Fz_N``), in place of those in the file.
-        delimiter: of a text file, ``""`` for white space; found if not given.
-        decimal: decimal mark of a text file, ``.`` or ``,``; found if not given.
-        group: group of a TDMS or HDF5 file, variable of a MATLAB file, topic of an MCAP file; found if not given.
-        rpm: spindle speed that makes time of a column of the spindle's angle, where there is none of time.
+        reading: what the file does not state, or states wrongly: sampling rate, names, delimiter, decimal mark, group.
 
     Raises:
         MeasuredError: not readable; the message names file, line or column, and what was expected.
@@ -47,17 +34,16 @@ def read_log(
         why = "is a folder" if path.is_dir() else "does not exist"
         raise MeasuredError(f"{path}: {why}, expected a measured log")
     try:
-        table = _read(path, columns, delimiter, decimal, group)
+        table = _read(path, reading)
     except OSError as error:
         raise MeasuredError(f"{path}: cannot be read: {(error.strerror or str(error)).lower()}") from error
-    return raw_log(path, table, rate_hz, rpm)
+    return raw_log(path, table, reading)
 
 
-def _read(
-    path: Path, columns: Sequence[str] | None, delimiter: str | None, decimal: str | None, group: str | None
-) -> Table:
+def _read(path: Path, reading: LogReading) -> Table:
     """The file's table, by the reader of its format."""
-    binary = _binary(path, group)
+    columns = reading.columns
+    binary = _binary(path, reading.group)
     if binary is not None:
         return binary if columns is None else _renamed(path, binary, columns)
     from twin.measured.formats import dynoware, lvm, text
@@ -65,9 +51,8 @@ def _read(
     if lvm.is_lvm(path):
         read = lvm.read_lvm(path)
         return read if columns is None else _renamed(path, read, columns)
-    if dynoware.is_dynoware(path):
-        return dynoware.read_dynoware(path, columns=columns, delimiter=delimiter, decimal=decimal)
-    return text.read_text(path, columns=columns, delimiter=delimiter, decimal=decimal)
+    read_text = dynoware.read_dynoware if dynoware.is_dynoware(path) else text.read_text
+    return read_text(path, columns=columns, delimiter=reading.delimiter, decimal=reading.decimal)
 
 
 def _binary(path: Path, group: str | None) -> Table | None:

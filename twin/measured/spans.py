@@ -1,4 +1,4 @@
-"""Spans of time and zeros of the amplifier as people write them."""
+"""Text forms of time spans and of the amplifier's zero."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ _WINDOW = re.compile(rf"^\s*({_NUMBER})\s*(?::|\.\.|–)\s*({_NUMBER})\s*s?\s*$"
 
 
 def parse_window(text: str) -> Gap:
-    """``4.00:4.02`` as begin and end.
+    """``4.00:4.02`` as beginning and end.
 
     Raises:
-        MeasuredError: no two numbers, or an end that is not behind the begin.
+        MeasuredError: not two numbers, or an end that is not after the beginning.
     """
     found = _WINDOW.match(text)
     if found is None:
         raise MeasuredError(f"window {text!r}: expected BEGIN:END in seconds, e.g. 4.00:4.02")
     begin, end = float(found[1]), float(found[2])
     if not begin < end:
-        raise MeasuredError(f"window {text!r}: ends at {end:g} s, expected an end behind its begin, {begin:g} s")
+        raise MeasuredError(f"window {text!r}: ends at {end:g} s, expected an end after its beginning, {begin:g} s")
     return begin, end
 
 

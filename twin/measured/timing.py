@@ -9,8 +9,10 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.errors import MeasuredError
+from twin.measured.axes import aliases
 from twin.measured.formats.table import Table
 from twin.measured.log import GAP_INTERVALS, UNEVEN, UNEVEN_GAP, Channel, RawLog, gaps_of, vector
+from twin.measured.settings import AS_IN_FILE, LogReading
 from twin.measured.units import ANGLE_NAME, TIME_NAME, find_unit, split_unit
 
 #: A given rate and the one of the time column may differ by so much before it is worth a note.
@@ -19,22 +21,22 @@ _SAME_RATE = 0.01
 _PLAUSIBLE_HZ = (20.0, 1e7)
 
 
-def raw_log(path: Path, table: Table, rate_hz: float | None = None, rpm: float | None = None) -> RawLog:
+def raw_log(path: Path, table: Table, reading: LogReading = AS_IN_FILE) -> RawLog:
     """Find the time and make the log.
 
     Args:
-        rate_hz: sampling rate given by the user; it wins over the file.
-        rpm: makes time of a column of the spindle's angle, where there is none of time.
+        reading: a sampling rate wins over the file; a spindle speed makes time of a column of the spindle angle where
+            there is none of time.
 
     Raises:
         MeasuredError: neither a time column nor a rate; time that goes back; an unknown unit of time.
     """
-    if rate_hz is not None and not 0.0 < rate_hz < np.inf:
-        raise MeasuredError(f"{path}: sampling rate {rate_hz:g} Hz, expected a number above 0")
+    rate_hz, rpm = reading.rate_hz, reading.rpm
     at, notes = _time_column(table)
-    if at is None and rate_hz is None and rpm is not None and (angle := angle_column(table)) is not None:
-        table = _timed_by_angle(path, table, angle, rpm)
-        at = len(table.names) - 1
+    if at is None and rate_hz is None and rpm is not None:
+        angle = _angle_column(table, reading.angle_column)
+        if angle is not None:
+            table, at = _timed_by_angle(table, angle, rpm), len(table.names)
     if at is None:
         t_s, rate, rows, more = _counted(path, table, rate_hz)
     else:
@@ -81,8 +83,11 @@ def _is_time(table: Table, index: int) -> bool:
     return not unit and TIME_NAME.match(base) is not None
 
 
-def angle_column(table: Table) -> int | None:
-    """Index of the only column of an angle, by its unit or name."""
+def _angle_column(table: Table, given: str | None = None) -> int | None:
+    """Index of the column of an angle: the one given, or the only one by unit or name."""
+    if given is not None:
+        name = aliases(table.names).get(given)
+        return None if name is None else table.names.index(name)
     found = []
     for index, name in enumerate(table.names):
         base, unit = split_unit(name)
@@ -92,10 +97,8 @@ def angle_column(table: Table) -> int | None:
     return found[0] if len(found) == 1 else None
 
 
-def _timed_by_angle(path: Path, table: Table, index: int, rpm: float) -> Table:
-    """The table with a column of time behind the others, counted by a spindle angle."""
-    if not rpm > 0.0:
-        raise MeasuredError(f"{path}: spindle speed {rpm:g} rpm, expected a number above 0")
+def _timed_by_angle(table: Table, index: int, rpm: float) -> Table:
+    """The table with a column of time after the others, counted by a spindle angle."""
     name = table.names[index]
     known = find_unit(split_unit(name)[1] or table.units[index])
     values = table.values[:, index]
@@ -118,7 +121,7 @@ def _counted(
 ) -> tuple[FloatArray, float, np.ndarray[tuple[int], np.dtype[np.bool_]], list[str]]:
     """Times counted by the rate."""
     rate = rate_hz or table.rate_hz
-    if rate is None and (angle := angle_column(table)) is not None:
+    if rate is None and (angle := _angle_column(table)) is not None:
         raise MeasuredError(
             f"{path}: no column of time, but one of an angle, {table.names[angle]!r}; give the spindle speed by --rpm "
             "to make time of it, or the sampling rate by --rate HZ"

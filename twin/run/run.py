@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from twin.archive import RunInfo, read_forces, read_run, run_info
 from twin.archive.container.partial import copy_file
 from twin.archive.force_table import joined_arrays
-from twin.record import Collision, ForceOn, NcEvent, Record, RunHeader, RunSummary, WorkpiecePatch
+from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, WorkpiecePatch
 from twin.run.interrupted import summary_of
 from twin.run.patches import joined
+from twin.settings.force_on import ForceOn
 from twin.sinks.outputs import opened
 from twin.workpiece.to_mesh import SurfaceMesh
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -67,8 +67,8 @@ def keys_table(model: type[BaseModel]) -> str:
 
 def _rows(model: type[BaseModel]) -> Iterator[str]:
     for name, field in model.model_fields.items():
-        default = default_text(field) or ""
-        if default and default != key_of(field).unset:
+        default = "required" if field.is_required() else default_text(field) or ""
+        if default and not field.is_required() and default != key_of(field).unset:
             default = f"`{default}`"
         yield f"| `{name}` | {default} | {_meaning(field)} |".replace("|  |", "| |")
 
@@ -86,4 +86,6 @@ def _short(value: Any) -> Any:
     """Whole numbers without a decimal point."""
     if isinstance(value, float) and value.is_integer():
         return int(value)
+    if isinstance(value, Mapping):
+        return {key: _short(inner) for key, inner in value.items()}
     return [_short(v) for v in value] if isinstance(value, list | tuple) else value

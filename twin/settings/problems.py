@@ -105,6 +105,9 @@ def _problem(location: Location, error: ErrorDetails, model: type[BaseModel]) ->
     if error["type"] == "extra_forbidden":
         table, _ = _declared(location[:-1], model)
         return unknown(location, table.model_fields)
+    if error["type"] == "value_error":
+        reason = str(error["ctx"]["error"]).partition(": ")[2]
+        return Problem(location, f" = {show(error['input'])}: {reason}")
     annotation, field = _declared(location, model)
     meaning = f" ({field.description})" if field is not None and field.description else ""
     expected = allowed(annotation, field.metadata if field is not None else ()) + meaning

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, TypeVar
-
-from pydantic import BaseModel, ValidationError
+from typing import Any
 
 from twin.errors import SettingsError
-from twin.settings.problems import problems_of
 
-_Model = TypeVar("_Model", bound=BaseModel)
 _POSITION = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
@@ -29,14 +24,23 @@ def read_toml(
     Raises:
         SettingsError: ``refuse``: not readable, not UTF-8, or, with line and column, not TOML.
     """
+    text = read_text(path, f"{what} (TOML)", refuse)
+    return parse_toml(text, str(path), refuse), text
+
+
+def read_text(path: Path, what: str, refuse: type[SettingsError] = SettingsError) -> str:
+    """A file's text.
+
+    Raises:
+        SettingsError: ``refuse``: not readable or not UTF-8.
+    """
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        return path.read_bytes().decode("utf-8-sig")
     except OSError as error:
         why = (error.strerror or str(error)).lower()
-        raise refuse(str(path), [f"cannot be read: {why}; expected {what} (TOML)"]) from error
+        raise refuse(str(path), [f"cannot be read: {why}; expected {what}"]) from error
     except UnicodeDecodeError as error:
-        raise refuse(str(path), [f"byte {error.start} is not UTF-8; expected {what} (TOML)"]) from error
-    return parse_toml(text, str(path), refuse), text
+        raise refuse(str(path), [f"byte {error.start} is not UTF-8; expected {what}"]) from error
 
 
 def parse_toml(text: str, source: str, refuse: type[SettingsError] = SettingsError) -> dict[str, Any]:
@@ -52,26 +56,6 @@ def parse_toml(text: str, source: str, refuse: type[SettingsError] = SettingsErr
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise _syntax_error(source, text, str(error), refuse) from error
-
-
-def checked(
-    model: type[_Model], values: Mapping[str, Any], source: str, refuse: type[SettingsError] = SettingsError
-) -> _Model:
-    """A table's values as its model.
-
-    Args:
-        source: file, or what else holds the values, for the message.
-
-    Raises:
-        SettingsError: ``refuse``, with every mistake.
-    """
-    try:
-        return model.model_validate(values)
-    except ValidationError as error:
-        found = error.errors(include_url=False)
-        texts = [str(p) for p in problems_of([e for e in found if e["loc"]], model)]
-        texts += [e["msg"].removeprefix("Value error, ") for e in found if not e["loc"]]
-        raise refuse(source, texts) from None
 
 
 def _syntax_error(source: str, text: str, message: str, refuse: type[SettingsError]) -> SettingsError:

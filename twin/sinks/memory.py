@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from twin.archive.force_table import force_arrays, force_table
-from twin.record import ForceOn, Record, RunHeader, RunSummary, Step
+from twin.record import Record, RunHeader, RunSummary, Step
+from twin.settings.force_on import ForceOn
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -17,6 +17,8 @@ from support.compared import run as made_run
 from twin.arrays import frozen
 from twin.cli import run
 from twin.comparison.batch import OUT_COLUMNS
+from twin.record import Attachment, RunHeader
+from twin.settings.toml_text import toml_text
 from twin.sinks.mcap_sink import McapSink
 
 TOOL = made_run()
@@ -41,9 +43,12 @@ def measured(made: Path, tmp_path: Path) -> Path:
     return Path(shutil.copy(made / "ap1.csv", tmp_path))
 
 
-def write_run(path: Path, **parameters: str) -> Path:
+def write_run(path: Path, job: str = "", **parameters: str) -> Path:
     with McapSink(path) as sink:
         for record in records(parameters):
+            if isinstance(record, RunHeader):
+                file = Attachment(name="job.toml", media_type="application/toml", data=job.encode())
+                record = replace(record, attachments=(file,))
             sink.write(record)
     return path
 
@@ -102,13 +107,14 @@ def test_map_and_body(archive: Path, tmp_path: Path, capsys: pytest.CaptureFixtu
     message = failed(capsys, archive, path)
     assert 'columns are A, B, C; give them with their signs, e.g. --map "x=A,y=B,z=C"' in message
     assert "no column 'Q'" in failed(capsys, archive, path, "--map", "x=Q,y=A,z=C")
-    assert "'w=A' is no axis = column" in failed(capsys, archive, path, "--map", "w=A")
+    assert "'w=A' is not axis = column" in failed(capsys, archive, path, "--map", "w=A")
 
 
 def test_the_jobs_measured_table_is_used(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write_log(tmp_path / "dyno.csv", log_of(TOOL, lag_s=0.2), "a,b,c,d")
-    table = {"file": str(path), "columns": "['t_s', 'F1_N', 'F2_N', 'F3_N']", "map": "x=F1,y=F2,z=F3", "lag_s": "0.2"}
-    archive = write_run(tmp_path / "run.mcap", **{f"measured.{k}": v for k, v in table.items()})
+    keys = {"columns": ["t_s", "F1_N", "F2_N", "F3_N"], "map": "x=F1,y=F2,z=F3", "lag_s": 0.2}
+    job = toml_text({"measured": {"file": path.name, **keys}})
+    archive = write_run(tmp_path / "run.mcap", job, **{"measured.file": str(path)})
     found = compared(capsys, archive)
     assert found["lag_s"] == 0.2 and found["windows"][0]["errors"]["x"]["max_n"] < 1e-3
     plain = write_run(tmp_path / "plain.mcap")
@@ -195,16 +201,16 @@ def test_a_folder_that_cannot_be_written_is_only_a_warning(
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--window", "4"], "window '4': expected BEGIN:END in seconds, e.g. 4.00:4.02"),
-        (["--window", "4:3"], "ends at 3 s, expected an end behind its begin"),
-        (["--lag", "soon"], "lag 'soon': expected auto or seconds"),
-        (["--offset", "1,2"], "offset '1,2': expected air, none, BEGIN:END"),
-        (["--notch", "x"], "notch 'x': expected HZ or HZ:QUALITY"),
+        (["--window", "4"], '--window[0] = "4": expected BEGIN:END in seconds, e.g. 4.00:4.02'),
+        (["--window", "4:3"], "ends at 3 s, expected an end after its beginning"),
+        (["--lag", "soon"], '--lag = "soon": expected auto or seconds'),
+        (["--offset", "1,2"], '--offset = "1,2": expected air, none, BEGIN:END'),
+        (["--notch", "x"], '--notch[0] = "x": expected HZ or HZ:QUALITY'),
         (["--lowpass", "4000"], "lowpass at 4000 Hz: expected it below half the sampling rate, 2500 Hz"),
         (["--lag", "60"], "no overlap in time"),
         (["--window", "70:71"], "window 70:71: 0 samples"),
         (["--unit", "mV"], "is in 'mV', expected a unit of force"),
-        (["--rate", "-1"], "sampling rate -1 Hz, expected a number above 0"),
+        (["--rate", "-1"], "--rate = -1.0: expected a number above 0"),
         (["--columns", "t,a"], "4 columns, --columns gives 2 names: t, a"),
     ],
 )
@@ -261,10 +267,12 @@ def test_tables_that_are_none(archive: Path, tmp_path: Path, capsys: pytest.Capt
     assert "no column 'measured'" in failed(capsys, "--batch", table("run\na.mcap\n"))
     assert "no rows" in failed(capsys, "--batch", table("run,measured\n"))
     assert "no [[compare]] tables" in failed(capsys, "--batch", table("a = 1\n", "t.toml"))
-    assert "no valid TOML" in failed(capsys, "--batch", table("a = \n", "t.toml"))
+    assert "t.toml:1:5: not valid TOML" in failed(capsys, "--batch", table("a = \n", "t.toml"))
     assert "cannot be read" in failed(capsys, "--batch", tmp_path / "none.csv")
-    assert "unknown column 'speed'" in failed(capsys, "--batch", table("run,measured,speed\nrun.mcap,a.csv,3\n"))
-    assert "drift = 'maybe': expected true or false" in failed(
+    assert "speed: unknown key; expected one of" in failed(
+        capsys, "--batch", table("run,measured,speed\nrun.mcap,a.csv,3\n")
+    )
+    assert 'drift = "maybe": expected true or false' in failed(
         capsys, "--batch", table("run,measured,drift\nrun.mcap,a.csv,maybe\n")
     )
 

@@ -14,11 +14,10 @@ from twin.comparison.comparison import Comparison, compare
 from twin.comparison.harmonics import lines
 from twin.comparison.metrics import axis_errors
 from twin.comparison.run_forces import run_forces
-from twin.comparison.settings import CompareSettings, ReadSettings
 from twin.errors import CompareError
-from twin.measured import force_log, read_log
-from twin.measured.filters import Filter
+from twin.measured.forces import read_forces
 from twin.measured.log import ForceLog
+from twin.measured.settings import CompareSettings
 
 RUN = run()
 WINDOWS = ((3.0, 3.02), (5.0, 5.02))
@@ -33,7 +32,7 @@ def kinds(found: Comparison) -> list[str]:
 
 
 def test_a_run_is_its_own_equal() -> None:
-    found = compare(RUN, log_of(RUN), CompareSettings(windows=WINDOWS, lag=0.0))
+    found = compare(RUN, log_of(RUN), CompareSettings(windows=WINDOWS, lag_s=0.0))
     for window in found.windows:
         assert [e.axis for e in window.errors] == ["x", "y", "z", "resultant"]
         for errors in window.errors:
@@ -88,14 +87,13 @@ def test_mirrored_axes_get_the_map_that_turns_them_back() -> None:
 
 
 def test_a_wrong_lag_is_told() -> None:
-    found = compare(RUN, log_of(RUN, lag_s=0.5), CompareSettings(lag=0.497))
+    found = compare(RUN, log_of(RUN, lag_s=0.5), CompareSettings(lag_s=0.497))
     assert any("0.500000 s: try --lag auto" in w for w in found.warnings)
 
 
 def test_filters_are_put_on_both_or_on_the_log_alone() -> None:
-    used = (Filter(kind="lowpass", hz=200.0),)
-    both = compare(RUN, log_of(RUN), CompareSettings(windows=WINDOWS, lag=0.0, filters=used))
-    alone = compare(RUN, log_of(RUN), CompareSettings(windows=WINDOWS, lag=0.0, filters=used, filter_both=False))
+    both = compare(RUN, log_of(RUN), CompareSettings(windows=WINDOWS, lag_s=0.0, lowpass_hz=200.0))
+    alone = compare(RUN, log_of(RUN), CompareSettings(windows=WINDOWS, lag_s=0.0, lowpass_hz=200.0, filter_both=False))
     assert both.windows[0].of("y").max_n < 1e-3
     assert alone.windows[0].of("y").max_n > 3.0
 
@@ -109,9 +107,9 @@ def test_resampling_is_told_and_keeps_the_delay() -> None:
 def test_a_spindle_that_runs_slower_is_told_and_each_window_finds_its_phase() -> None:
     log = log_of(RUN)
     slow = replace(log, t_s=frozen(log.t_s * 1.03, "t_s", (None,)), rate_hz=log.rate_hz / 1.03)
-    found = compare(RUN, slow, CompareSettings(windows=WINDOWS, lag=0.0, phase=True))
+    found = compare(RUN, slow, CompareSettings(windows=WINDOWS, lag_s=0.0, phase=True))
     assert any("spindle at 3495 rpm by its spectrum, expected the run's 3600 rpm" in w for w in found.warnings)
-    without = compare(RUN, slow, CompareSettings(windows=WINDOWS, lag=0.0))
+    without = compare(RUN, slow, CompareSettings(windows=WINDOWS, lag_s=0.0))
     assert found.windows[0].of("x").rms_n < 0.4 * without.windows[0].of("x").rms_n
     assert kinds(found) == ["lag", "phase", "phase"]
 
@@ -123,7 +121,7 @@ def test_gaps_are_left_out() -> None:
         log, t_s=frozen(log.t_s[~hole], "t_s", (None,)), force_n=frozen(log.force_n[~hole], "f", (None, 3)),
         gaps=((3.005, 3.012),),
     )  # fmt: skip
-    found = compare(RUN, holed, CompareSettings(windows=WINDOWS, lag=0.0))
+    found = compare(RUN, holed, CompareSettings(windows=WINDOWS, lag_s=0.0))
     assert not ((found.windows[0].t_s > 3.0051) & (found.windows[0].t_s < 3.0119)).any()
     assert found.windows[0].of("x").max_n < 1e-9
 
@@ -133,7 +131,7 @@ def test_two_axes_are_compared_alone() -> None:
     flat = log.force_n.copy()
     flat[:, 2] = 0.0
     two = replace(log, force_n=frozen(flat, "force_n", (None, 3)), axes=("x", "y"), channels=("Fx", "Fy", ""))
-    found = compare(RUN, two, CompareSettings(windows=WINDOWS, lag=0.0))
+    found = compare(RUN, two, CompareSettings(windows=WINDOWS, lag_s=0.0))
     assert [e.axis for e in found.windows[0].errors] == ["x", "y", "resultant"]
     assert found.windows[0].of("resultant").max_n < 1e-9
 
@@ -145,21 +143,21 @@ def test_a_unit_wrong_by_a_thousand_is_refused(factor: float, how: str, unit: st
         CompareError, match=rf"about (9\d\d|10\d\d) times {how} than the run's .* in {unit}\? .*--unit {unit}"
     ):
         compare(RUN, log, CompareSettings())
-    found = compare(RUN, log, CompareSettings(read=ReadSettings(unit="N")))
+    found = compare(RUN, log, CompareSettings(unit="N"))
     assert any(f"times {how} than the run's" in w for w in found.warnings)
 
 
 def test_newtons_called_kilonewtons_are_told(tmp_path: Path) -> None:
     path = write_log(tmp_path / "a.csv", log_of(RUN, rate_hz=1000.0), "t_s,Fx_kN,Fy_kN,Fz_kN")
-    log = force_log(read_log(path))
+    log = read_forces(path)
     with pytest.raises(CompareError, match=r"times larger than the run's .* in N\? Give the unit by --unit N;"):
         compare(RUN, log, CompareSettings())
 
 
 def test_too_few_samples_a_tooth_are_told() -> None:
-    found = compare(RUN, log_of(RUN, rate_hz=200.0), CompareSettings(lag=0.0))
+    found = compare(RUN, log_of(RUN, rate_hz=200.0), CompareSettings(lag_s=0.0))
     assert any("sampled at 200 Hz, below twice the tooth-passing frequency (120 Hz)" in w for w in found.warnings)
-    found = compare(RUN, log_of(RUN, rate_hz=600.0), CompareSettings(lag=0.0))
+    found = compare(RUN, log_of(RUN, rate_hz=600.0), CompareSettings(lag_s=0.0))
     assert any("5.0 samples a tooth period" in w for w in found.warnings)
 
 
@@ -167,12 +165,12 @@ def test_no_overlap_names_both_spans() -> None:
     with pytest.raises(
         CompareError, match=r"no overlap in time: the log covers 0.0000 to 7.5998 s, with a lag of 50.0"
     ):
-        compare(RUN, log_of(RUN), CompareSettings(lag=50.0))
+        compare(RUN, log_of(RUN), CompareSettings(lag_s=50.0))
 
 
 def test_windows_outside_are_refused() -> None:
     with pytest.raises(CompareError, match=r"window 9:9.1: 0 samples .* the overlap is 0.0000 to 7.5998 s of the run"):
-        compare(RUN, log_of(RUN), CompareSettings(windows=((9.0, 9.1),), lag=0.0))
+        compare(RUN, log_of(RUN), CompareSettings(windows=((9.0, 9.1),), lag_s=0.0))
 
 
 def test_a_run_without_forces_is_refused() -> None:

@@ -94,7 +94,7 @@ def test_defaults_hold_where_a_cut_is_silent_and_names_are_made_up() -> None:
         ({"mean_error_n": [1, 0, 1]}, "cuts[0].mean_error_n (cut ap1) = [1, 0, 1]: expected three numbers above 0"),
         ({"window_s": [1.0, 2.0]}, "cuts[0].window_s (cut ap1) = [1.0, 2.0]: expected it only beside log"),
         ({"lag_s": 1.0}, "cuts[0].lag_s (cut ap1) = 1.0: expected it only beside job"),
-        ({"map": "q=Fx"}, "cuts[0].map (cut ap1): axis map 'q=Fx'"),
+        ({"map": "q=Fx"}, "cuts[0].map (cut ap1) = \"q=Fx\": 'q=Fx' is not axis = column"),
         (
             {"log": "a.csv", "mean_force_n": None},
             'cuts[0].log (cut ap1) = "a.csv": expected a measured log; there/a.csv does not exist',
@@ -113,7 +113,7 @@ def test_defaults_hold_where_a_cut_is_silent_and_names_are_made_up() -> None:
         ),
         ({"job": "job.toml"}, 'cuts[0].direction (cut ap1) = "slot": expected no such key beside job, which says it'),
         ({"force_on": "table"}, 'cuts[0].force_on (cut ap1) = "table": expected one of "tool", "workpiece"'),
-        ({"columns": "a,b"}, 'cuts[0].columns (cut ap1) = "a,b": expected a list of texts'),
+        ({"columns": 3}, "cuts[0].columns (cut ap1) = 3: expected a list of texts"),
     ],
 )
 def test_mistakes_in_a_cut(changes: dict[str, object], message: str) -> None:
@@ -145,7 +145,7 @@ def test_mistakes_in_a_cut(changes: dict[str, object], message: str) -> None:
         ),
         (
             {"tool": TOOL, "cuts": [CUT], "defaults": {"map": "x"}},
-            "defaults.map: axis map 'x'",
+            "defaults.map = \"x\": 'x' is not axis = column",
         ),
         ({"tool": TOOL, "cuts": [CUT], "defaults": {"log": "x"}}, "defaults.log: unknown key"),
         (

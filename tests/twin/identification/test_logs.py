@@ -15,9 +15,9 @@ from twin.errors import IdentifyError
 from twin.identification.cuts.cuts_file import Fit
 from twin.identification.cuts.load import cuts_from_dict
 from twin.identification.cuts.measure import harmonic_count
-from twin.identification.cuts.steady import find_cut, steady_part
 from twin.identification.harmonics import find_speed, of_samples, of_waveform, to_waveform
 from twin.identification.identify import Prepared, identify, prepare
+from twin.measured.steady import find_cut, steady_part
 
 SIDE = Pass(
     diameter=8.0, corner=4.0, helix_deg=30.0, rpm=3600.0, feed=1200.0, axial=3.0, wall=(-math.inf, 0.0), points=200

@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 from support.measured_files import FORMATS
 
 from twin.errors import MeasuredError
-from twin.measured import force_log, read_log
+from twin.measured.forces import force_log
 from twin.measured.formats.text import parse_text
 from twin.measured.log import RawLog
+from twin.measured.read import read_log
+from twin.measured.settings import LogReading
 from twin.measured.timing import raw_log
 
 CHARACTERS = st.sampled_from(list("0123456789.,;:\t -+eE#%\"'[]()/abcFxyztNs\n\n\n"))
@@ -34,7 +36,7 @@ def sound(log: RawLog) -> None:
 def test_any_text(text: str) -> None:
     path = Path("log.txt")
     try:
-        log = raw_log(path, parse_text(path, text), 1000.0 if "e" in text else None)
+        log = raw_log(path, parse_text(path, text), LogReading(rate_hz=1000.0 if "e" in text else None))
         sound(log)
         force_log(log)
     except MeasuredError as error:

@@ -13,7 +13,7 @@ from twin.errors import MeasuredError
 from twin.measured.filters import Filter, filtered
 from twin.measured.log import ForceLog, gaps_of
 from twin.measured.spindle import spindle_speed
-from twin.measured.steady import steady_window
+from twin.measured.steady import find_cut, steady_part
 from twin.measured.uniform import resample, uniform
 from twin.measured.zero import offset_of, remove_drift, shift_zero
 
@@ -177,7 +177,11 @@ def test_the_steady_cut_is_found_by_the_log_itself() -> None:
     level = np.interp(t_s, [0.0, 0.5, 0.7, 2.2, 2.3, 3.0], [0.0, 0.0, 80.0, 80.0, 0.0, 0.0])
     rng = np.random.default_rng(5)
     wave = level[:, None] * (1.0 + 0.3 * np.sin(2 * np.pi * 100.0 * t_s))[:, None] + rng.normal(size=(30000, 3))
-    begin, end = steady_window(made(t_s, wave))
-    assert 0.62 < begin < 0.76 and 2.14 < end < 2.25
-    with pytest.raises(MeasuredError, match=r"expected at least 0.06 s for a steady cut"):
-        steady_window(tone(100.0, seconds=0.03))
+    found = find_cut(t_s, wave, 0.02, 2)
+    assert 0.5 < found.cut_s[0] < 0.62 and 2.22 < found.cut_s[1] < 2.31
+    (first, touch), (leave, last) = found.air_s
+    assert first == t_s[0] and touch < 0.5 and leave > 2.3 and last == t_s[-1]
+    steady = steady_part(found, 2.0, 10.0, 0.02)
+    assert steady is not None and 0.7 < steady[0] < 0.84 and 2.0 < steady[1] < 2.2
+    throughout = find_cut(t_s, tone(100.0, seconds=3.0).force_n, 0.02, 2)
+    assert throughout.cut_s == (t_s[0], t_s[-1]) and throughout.air_s == ()

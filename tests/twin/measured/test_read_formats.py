@@ -11,9 +11,11 @@ from support.reference import REFERENCE
 from support.slot_run import SlotRun
 
 from twin.errors import MeasuredError
-from twin.measured import AxisMap, force_log, read_log
+from twin.measured.forces import force_log, read_forces
+from twin.measured.read import read_log
+from twin.measured.settings import LogReading
 from twin.measured.spindle import spindle_speed
-from twin.measured.steady import steady_window
+from twin.measured.steady import find_cut
 from twin.measured.zero import in_windows
 from twin.sinks.mcap_sink import McapSink
 from twin.sinks.memory import MemorySink
@@ -33,7 +35,7 @@ PUBLISHED = {
 def test_a_format_gives_back_what_was_written(name: str, tmp_path: Path) -> None:
     file, write, accuracy = FORMATS[name]
     write(tmp_path / file)
-    log = force_log(read_log(tmp_path / file))
+    log = read_forces(tmp_path / file)
     assert log.rate_hz == pytest.approx(RATE_HZ, rel=1e-6)
     np.testing.assert_allclose(log.t_s, times(), atol=1e-7)
     np.testing.assert_allclose(log.force_n, forces(), atol=accuracy * np.abs(forces()).max())
@@ -45,7 +47,7 @@ def test_the_suffix_does_not_matter(name: str, tmp_path: Path) -> None:
     _, write, accuracy = FORMATS[name]
     path = tmp_path / "log.mat" if name == "mat5" else tmp_path / "log.dat"
     write(path)
-    log = force_log(read_log(path))
+    log = read_forces(path)
     np.testing.assert_allclose(log.force_n, forces(), atol=accuracy * np.abs(forces()).max())
 
 
@@ -55,7 +57,7 @@ def test_a_run_is_a_log(tmp_path: Path) -> None:
         for record in run.records():
             sink.write(record)
             memory.write(record)
-    log = force_log(read_log(tmp_path / "run.mcap"))
+    log = read_forces(tmp_path / "run.mcap")
     want = memory.forces()
     np.testing.assert_allclose(log.force_n, np.column_stack([want["fx_n"], want["fy_n"], want["fz_n"]]))
     assert log.spindle_angle_rad is not None
@@ -90,20 +92,20 @@ def test_forces_in_several_groups_must_be_chosen(tmp_path: Path) -> None:
                 file[f"{group}/F{axis}"] = (k + 1) * forces()[:, i]
     with pytest.raises(MeasuredError, match="first, second; choose one by --group first"):
         read_log(tmp_path / "two.h5")
-    log = force_log(read_log(tmp_path / "two.h5", group="second"))
+    log = read_forces(tmp_path / "two.h5", LogReading(group="second"))
     np.testing.assert_allclose(log.force_n, 2.0 * forces())
     with pytest.raises(MeasuredError, match="no group 'third'; expected one of first, second"):
-        read_log(tmp_path / "two.h5", group="third")
+        read_log(tmp_path / "two.h5", LogReading(group="third"))
 
 
 def test_a_matrix_gets_names_from_the_command_line(tmp_path: Path) -> None:
     from scipy.io import savemat
 
     savemat(tmp_path / "m.mat", {"data": np.column_stack([times(), forces()])})
-    raw = read_log(tmp_path / "m.mat", columns=["t_s", "Fx_N", "Fy_N", "Fz_N"])
+    raw = read_log(tmp_path / "m.mat", LogReading(columns=("t_s", "Fx_N", "Fy_N", "Fz_N")))
     np.testing.assert_allclose(force_log(raw).force_n, forces())
     with pytest.raises(MeasuredError, match=r"4 columns \(data\[1\], .*\), --columns gives 2 names"):
-        read_log(tmp_path / "m.mat", columns=["t_s", "Fx_N"])
+        read_log(tmp_path / "m.mat", LogReading(columns=("t_s", "Fx_N")))
 
 
 def test_missing_files_and_folders(tmp_path: Path) -> None:
@@ -117,9 +119,9 @@ def test_workpiece_and_map_turn_signs(tmp_path: Path) -> None:
     write_csv(tmp_path / "a.csv")
     raw = read_log(tmp_path / "a.csv")
     x, y, z = forces().T
-    log = force_log(raw, AxisMap.parse("x=-Fy,y=-Fx,z=Fz"))
+    log = force_log(raw, LogReading(map="x=-Fy,y=-Fx,z=Fz"))
     np.testing.assert_allclose(log.force_n, np.column_stack([-y, -x, z]))
-    log = force_log(raw, AxisMap.parse("x=Fy, y=Fx, z=-Fz"), force_on="workpiece")
+    log = force_log(raw, LogReading(map="x=Fy, y=Fx, z=-Fz", force_on="workpiece"))
     np.testing.assert_allclose(log.force_n, np.column_stack([-y, -x, z]))
     assert log.channels == ("Fy", "Fx", "-Fz")
 
@@ -133,7 +135,7 @@ def test_genuine_dynoware_exports_have_the_published_means(feed: int) -> None:
     assert (raw.rate_hz, len(raw.t_s)) == (10000.0, 10001)
     assert log.channels == ("Fx", "Fy", "Fz")
     np.testing.assert_allclose(log.force_n.mean(axis=0), PUBLISHED[feed], atol=0.06)
-    steady = in_windows(log.t_s, [steady_window(log, 6000.0)])
+    steady = in_windows(log.t_s, [find_cut(log.t_s, log.force_n, 0.01, 2).cut_s])
     np.testing.assert_allclose(log.force_n[steady].mean(axis=0), PUBLISHED[feed], atol=0.06)
     speed = spindle_speed(log, 2, 6000.0)
     assert speed is not None and abs(speed.rpm - 6000.0) < 1.0

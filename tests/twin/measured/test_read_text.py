@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from twin.errors import MeasuredError
-from twin.measured import force_log, read_log
+from twin.measured.forces import read_forces
 from twin.measured.log import ForceLog
+from twin.measured.settings import LogReading
 
 ROWS = [(0.000, 1.5, -2.25, 3.0), (0.001, 2.5, -3.25, 4.0), (0.002, 3.5, -4.25, 5.0), (0.003, 4.5, -5.25, 6.0)]
 WANT = np.array(ROWS)[:, 1:]
@@ -23,7 +24,7 @@ def body(delimiter: str = ",", decimal: str = ".", rows: list[tuple[float, ...]]
 def read(tmp_path: Path, text: str | bytes, **options: object) -> ForceLog:
     path = tmp_path / "log.txt"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return force_log(read_log(path, **options))  # type: ignore[arg-type]
+    return read_forces(path, LogReading.model_validate(options))
 
 
 @pytest.mark.parametrize(
@@ -86,12 +87,10 @@ def test_units_are_turned_into_newtons_and_seconds(header: str, force: float, ti
 
 
 def test_voltages_are_refused_unless_the_map_has_their_factor(tmp_path: Path) -> None:
-    from twin.measured import AxisMap
-
     text = f"t_s,Fx [mV],Fy [mV],Fz [mV]\n{body()}"
     with pytest.raises(MeasuredError, match=r"column 'Fx \[mV\]' is in 'mV', expected a unit of force .* x=2.5\*Fx"):
         read(tmp_path, text)
-    log = force_log(read_log(tmp_path / "log.txt"), AxisMap.parse("x=-2.0*Fx,y=0.5*Fy,z=3*Fz"))
+    log = read_forces(tmp_path / "log.txt", LogReading(map="x=-2.0*Fx,y=0.5*Fy,z=3*Fz"))
     np.testing.assert_allclose(log.force_n, WANT * [-2.0, 0.5, 3.0])
     assert any("taken as N/mV" in note for note in log.notes)
 

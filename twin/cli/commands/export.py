@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-if TYPE_CHECKING:
-    from twin.record import ForceOn
-
-
-class Body(StrEnum):
-    """What feels the forces."""
-
-    TOOL = "tool"
-    WORKPIECE = "workpiece"
+from twin.settings.force_on import ForceOn
 
 
 def export(
     run: Annotated[Path, typer.Argument(metavar="RUN.mcap", help="Archive of a run.", show_default=False)],
     out: Annotated[Path, typer.Argument(metavar="OUT.csv|.parquet", help="Table to write.", show_default=False)],
     on: Annotated[
-        Body | None,
+        ForceOn | None,
         typer.Option(help="Body that feels the forces; the job's output.force_on if not given.", show_default=False),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
@@ -35,12 +26,12 @@ def export(
     from twin.archive import export_forces
     from twin.cli.console import results
 
-    rows = export_forces(run, out, on=on.value if on is not None else _force_on(run), force=force)
+    rows = export_forces(run, out, on=on or _force_on(run), force=force)
     results().print(f"{rows} samples written to {out}", markup=False, soft_wrap=True)
 
 
 def _force_on(run: Path) -> ForceOn:
-    """What the run's job asked for."""
+    """The body that the run's job names."""
     from twin.archive import read_run
     from twin.record import RunHeader
 

@@ -9,7 +9,7 @@ from pydantic import Field, Strict
 
 from twin.identification.models.straight import Direction
 from twin.job.model import Tool
-from twin.record import ForceOn
+from twin.measured.settings import LogReading
 from twin.settings.table import FilePath, Point, Table
 
 Name: TypeAlias = Literal["Ktc", "Kte", "Krc", "Kre", "Kac", "Kae"]
@@ -27,7 +27,7 @@ class CutTool(Tool):
     )
 
 
-class Shared(Table):
+class Shared(LogReading):
     """What `[defaults]` may give for all cuts, and each cut for itself."""
 
     direction: Direction | None = Field(default=None, description="slot, up or down milling; feed along +x, M3")
@@ -37,19 +37,6 @@ class Shared(Table):
     )
     spindle_rpm: float | None = Field(default=None, gt=0.0, description="spindle speed, rpm")
     feed_mm_min: float | None = Field(default=None, gt=0.0, description="feed, mm/min")
-    map: str | None = Field(
-        default=None,
-        description="which column with which sign is each axis, e.g. x=-Fy,y=-Fx,z=Fz; by name if not given",
-    )
-    force_on: ForceOn = Field(default="tool", description="body that the mapped forces act on")
-    unit: str | None = Field(default=None, description="unit of the force columns where the log does not say it")
-    rate_hz: float | None = Field(default=None, gt=0.0, description="sampling rate where the log does not say it, Hz")
-    columns: Texts | None = Field(default=None, description="names of the log's columns in place of its header")
-    delimiter: str | None = Field(default=None, description="delimiter of a text log; found if not given")
-    group: str | None = Field(default=None, description="group, variable or topic of the forces in the log")
-    decimal: Literal[".", ","] | None = Field(
-        default=None, description="decimal mark of a text log; found if not given"
-    )
     window_s: Window | None = Field(
         default=None, description="from, to: the steady cut in the log's time; found if not given"
     )

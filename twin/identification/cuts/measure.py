@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.errors import IdentifyError, MeasuredError
 from twin.identification.cuts.cuts_file import Cut, Fit
-from twin.identification.cuts.steady import Found, Span, steady_part
 from twin.identification.harmonics import SPEED_RANGE, ComplexArray, find_speed, of_samples
-from twin.measured import AxisMap, ForceLog, force_log, read_log
 from twin.measured.axes import aliases
-from twin.measured.log import AXES
+from twin.measured.forces import read_forces
+from twin.measured.log import AXES, ForceLog
 from twin.measured.spindle import spindle_speed
+from twin.measured.steady import CutAndAir, Span, steady_part
 
 #: Multiples of the tooth-passing frequency in a waveform, if the file does not say.
 _ORDERS = 12
@@ -80,9 +80,9 @@ def given_mean(cut: Cut, rpm: float) -> Measured:
     """
     assert cut.mean_force_n is not None
     values, errors = np.array(cut.mean_force_n), np.array(cut.mean_error_n or (math.nan,) * 3)
-    if cut.map is not None:
+    if (axis_map := cut.axis_map) is not None:
         columns = ["Fx_N", "Fy_N", "Fz_N"]
-        terms = AxisMap.parse(cut.map).terms(aliases(columns))
+        terms = axis_map.terms(aliases(columns))
         mixed, squares = np.full(3, math.nan), np.full(3, math.nan)
         for axis, parts in terms.items():
             i = AXES.index(axis)
@@ -100,23 +100,14 @@ def log_of(cut: Cut, rpm: float) -> ForceLog:
         rpm: makes time of a column of the spindle's angle, where there is no time.
 
     Raises:
-        MeasuredError: see `twin.measured.read_log` and `twin.measured.force_log`.
+        MeasuredError: see `twin.measured.forces.read_forces`.
     """
     assert cut.log is not None
-    raw = read_log(
-        cut.log,
-        rate_hz=cut.rate_hz,
-        columns=cut.columns,
-        delimiter=cut.delimiter,
-        decimal=cut.decimal,
-        group=cut.group,
-        rpm=rpm,
-    )
-    axis_map = AxisMap.parse(cut.map) if cut.map is not None else None
-    return force_log(raw, axis_map, force_on=cut.force_on, unit=cut.unit)
+    reading = cut if cut.rpm is not None else cut.model_copy(update={"rpm": rpm})
+    return read_forces(cut.log, reading)
 
 
-def straight_window(cut: Cut, log: ForceLog, found: Found, reach_mm: float, rpm: float, feed_mm_s: float) -> Span:
+def straight_window(cut: Cut, log: ForceLog, found: CutAndAir, reach_mm: float, rpm: float, feed_mm_s: float) -> Span:
     """The steady part of a straight cut in its log's time.
 
     Raises:
@@ -134,7 +125,7 @@ def straight_window(cut: Cut, log: ForceLog, found: Found, reach_mm: float, rpm:
 
 
 def measure(
-    cut: Cut, log: ForceLog, found: Found, window: Span, rpm: float, teeth: int, fit: Fit, seems: float = 1.0
+    cut: Cut, log: ForceLog, found: CutAndAir, window: Span, rpm: float, teeth: int, fit: Fit, seems: float = 1.0
 ) -> Measured:
     """Mean and waveform in a window of a log.
 
@@ -254,7 +245,7 @@ class _Zero:
         return self.value_n + np.outer(t_s - self.middle_s, self.drift_n_s)
 
 
-def _zero(cut: Cut, log: ForceLog, found: Found, middle_s: float, revolution_s: float) -> _Zero:
+def _zero(cut: Cut, log: ForceLog, found: CutAndAir, middle_s: float, revolution_s: float) -> _Zero:
     """What is taken off the force."""
     spans = cut.air_s if cut.air_s is not None else found.air_s
     if cut.zero == "none" or not spans:

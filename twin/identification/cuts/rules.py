@@ -6,10 +6,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from twin.errors import MeasuredError
 from twin.job.facts import Facts, ToolFacts
 from twin.job.tool_rules import TOOL_RULES
-from twin.measured.axes import AxisMap
 from twin.settings.problems import Location, Problem, missing, wrong
 
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
@@ -160,20 +158,6 @@ def windows_in_order(facts: Facts, _folder: Path) -> Iterator[Problem]:
                 yield wrong(cut.at("air_s"), list(window), "from, to with from below to")
 
 
-def maps_are_maps(facts: Facts, _folder: Path) -> Iterator[Problem]:
-    """Axis maps can be read."""
-    seen: set[Location] = set()
-    for cut in cuts_of(facts):
-        text, at = cut.get("map"), cut.at("map")
-        if text is None or at in seen:
-            continue
-        seen.add(at)
-        try:
-            AxisMap.parse(text)
-        except MeasuredError as error:
-            yield Problem(at, f": {error}")
-
-
 def files_are_there(facts: Facts, folder: Path) -> Iterator[Problem]:
     """Logs and jobs exist."""
     for cut in cuts_of(facts):
@@ -203,7 +187,6 @@ RULES: tuple[Rule, ...] = (
     one_measurement,
     errors_above_zero,
     windows_in_order,
-    maps_are_maps,
     files_are_there,
     bounds_in_order,
 )

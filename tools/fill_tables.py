@@ -1,0 +1,25 @@
+"""Put tables of keys into the pages, each after its mark ``<!-- keys of twin.job.model.Program -->``.
+
+python tools/fill_tables.py
+"""
+
+from __future__ import annotations
+
+import importlib
+import re
+from pathlib import Path
+
+from twin.settings.keys import keys_table
+
+DOCS = Path(__file__).parents[1] / "docs"
+_TABLE = re.compile(r"(<!-- keys of ([\w.]+)\.(\w+) -->\n\n)(?:\|.*\n)*")
+
+
+def filled(page: str) -> str:
+    """A page with the tables of the models that its marks name."""
+    return _TABLE.sub(lambda m: m[1] + keys_table(getattr(importlib.import_module(m[2]), m[3])) + "\n", page)
+
+
+if __name__ == "__main__":
+    for path in DOCS.glob("*.md"):
+        path.write_text(filled(path.read_text("utf-8")), "utf-8")

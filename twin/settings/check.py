@@ -1,0 +1,43 @@
+"""Values to a settings table, with every mistake in one error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from twin.errors import SettingsError
+from twin.settings.problems import Problem, problems_of
+
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+def checked(
+    model: type[_Model],
+    values: Mapping[str, Any],
+    source: str,
+    refuse: type[SettingsError] = SettingsError,
+    *,
+    strict: bool | None = None,
+    name: Callable[[str], str] = str,
+) -> _Model:
+    """A table's values as its model.
+
+    Args:
+        source: file, or what else holds the values, for the message.
+        refuse: the error for wrong values.
+        strict: False takes numbers and truth values written as text, as the cells of a CSV file are.
+        name: what a key is called in the message.
+
+    Raises:
+        SettingsError: ``refuse``, with every mistake.
+    """
+    try:
+        return model.model_validate(values, strict=strict)
+    except ValidationError as error:
+        found = error.errors(include_url=False)
+        problems = [*problems_of([e for e in found if e["loc"]], model)]
+        texts = [str(Problem((name(str(p.location[0])), *p.location[1:]), p.text)) for p in problems]
+        texts += [e["msg"].removeprefix("Value error, ") for e in found if not e["loc"]]
+        raise refuse(source, texts) from None
