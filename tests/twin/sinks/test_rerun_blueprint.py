@@ -9,7 +9,7 @@ import subprocess
 import sysconfig
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pyarrow as pa
@@ -103,7 +103,8 @@ def viewer(*files: Path) -> Iterator[ViewerClient]:
     try:
         yield connect(process, port)
     finally:
-        os.killpg(process.pid, signal.SIGTERM)
+        with suppress(ProcessLookupError):  # a viewer that could not start has ended by itself
+            os.killpg(process.pid, signal.SIGTERM)
         process.wait()
 
 
