@@ -14,7 +14,7 @@ TOOL_TABLE = "twin.tools.json"
 JSON_TYPE = "application/json"
 PARAMETERS = "twin.parameters"
 #: Last entry of the head of a file: whoever finds it has everything of the `RunHeader` behind him.
-HEADER = "twin.simulation"
+HEADER = "twin.run"
 SUMMARY = "twin.summary"
 
 _HEADER_TEXT = ("twin_version", "program", "force_on")

@@ -92,7 +92,7 @@ def test_summary_section(path):
     assert topics["/force"] == 55
     assert (statistics.message_start_time, statistics.message_end_time) == (0, round(60 / 21600 * 1e9))
     assert sum(sum(1 for _ in c.message_index_offsets) > 0 for c in summary.chunk_indexes) == statistics.chunk_count
-    assert list(metadata) == ["twin.parameters", "twin.simulation", "twin.summary"]
+    assert list(metadata) == ["twin.parameters", "twin.run", "twin.summary"]
     assert metadata["twin.parameters"] == {"cutting.Ktc": "935.62", "program.file": "slot.nc"}
     assert metadata["twin.summary"]["mean_force_n"] == "[1.5, 2.5, 3.5, 0.3333333333333333]"
 
