@@ -59,7 +59,7 @@ def replay(
         TwinError: a job, tool, stock or program that cannot be replayed, or a file that exists or cannot be written.
         gcode.GcodeError: an NC program that cannot be interpreted.
 
-    Example:
+    Examples:
         >>> run = twin.replay("examples/ball_slot/job.toml")
         >>> run.forces["fx_n"].max(), run.summary.peak_force_n
         >>> run.save("slot.mcap")
@@ -95,7 +95,7 @@ def open_run(path: StrPath) -> Run:
     Raises:
         ArchiveError: no such file, no archive of a run, or a damaged one.
 
-    Example:
+    Examples:
         >>> run = twin.open_run("slot.mcap")
         >>> run.mesh().triangles.shape
     """
@@ -116,7 +116,7 @@ def records(job_or_path: Job | StrPath, *, threads: int | None = None) -> Iterat
     Raises:
         TwinError, gcode.GcodeError: as `replay`, when the first record is asked for.
 
-    Example:
+    Examples:
         >>> for record in twin.records("examples/ball_slot/job.toml"):
         ...     if isinstance(record, twin.Step) and record.engagement.cutting:
         ...         print(record.nc_line, record.engagement.axial_depth_mm)

@@ -60,7 +60,7 @@ class Run:
         complete: whether the program was replayed to its end.
         intact: whether the archive itself is whole; False for what a killed replay left.
 
-    Example:
+    Examples:
         >>> run = twin.open_run("slot.mcap")
         >>> run.summary.peak_force_n
         (41.1, 61.1, 23.6, 66.5)
