@@ -1,4 +1,4 @@
-"""Array types and the checks made once at every public door."""
+"""Array types, and the checks made where data comes in."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ FloatArray: TypeAlias = NDArray[np.float64]
 
 
 def places_in_runs(counts: NDArray[np.int64]) -> NDArray[np.int64]:
-    """0, 1, 2 ... in each of some runs one behind the other, shape (sum of counts,).
+    """0, 1, 2 ... in each of several consecutive runs, shape (sum of counts,).
 
     Args:
         counts: length of each run, shape (n,).

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class TwinError(Exception):
-    """A mistake that the user can mend: one message that names file or key, place, value and what was expected."""
+    """An error that the user can correct: one message that names file or key, line, value and what was expected."""
 
 
 class SettingsError(TwinError):
@@ -26,11 +26,11 @@ class JobError(SettingsError):
 
 
 class StockError(TwinError):
-    """A stock that has no extent, or cannot be sliced at the pitch asked for."""
+    """A stock that has no extent, or cannot be sliced at the requested pitch."""
 
 
 class MeshError(TwinError):
-    """A triangle mesh that is no solid, or a file that is no mesh."""
+    """A triangle mesh that is not a closed solid, or a file that is not a mesh."""
 
 
 class ToolError(TwinError):
@@ -38,23 +38,23 @@ class ToolError(TwinError):
 
 
 class ToolPathError(TwinError):
-    """A tool path that cannot be made, or written: wrong parameters, an empty one, or a file."""
+    """A tool path that cannot be planned or written: wrong parameters, an empty path, or a file."""
 
 
 class ArchiveError(TwinError):
-    """A run's file that cannot be written or read."""
+    """An archive or recording of a run that cannot be read or written."""
 
 
 class ReplayError(TwinError):
-    """A program that cannot be replayed on this job: the message names the NC line."""
+    """An NC program that cannot be replayed with this job; the message names the NC line."""
 
 
 class CollisionError(ReplayError):
-    """A collision in a strict replay."""
+    """A collision in a strict replay; the message names NC line, tool and position."""
 
 
 class MeasuredError(TwinError):
-    """A measured log that cannot be read, or does not say what is asked of it."""
+    """A measured log that cannot be read, or lacks what is requested of it."""
 
 
 class CompareError(TwinError):
@@ -66,4 +66,4 @@ class CutsError(JobError):
 
 
 class IdentifyError(TwinError):
-    """Test cuts that no coefficients can be found from."""
+    """Test cuts from which no coefficients can be identified."""

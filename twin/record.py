@@ -1,4 +1,4 @@
-"""What a replay says: the records that sinks, archives and comparisons see, and all that they see.
+"""Records of a run: everything that a replay gives to sinks, archives and comparisons.
 
 Lengths mm, time s (machine time from program start), forces N, torque N·m, power W, angles rad. Coordinates are the
 workpiece frame: the work offset that the job's stock is given in. Arrays are read-only.
@@ -20,7 +20,7 @@ CollisionKind: TypeAlias = Literal["rapid", "shank", "holder", "spindle-stopped"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Attachment:
-    """A file that belongs to the run: NC program, job file, stock STL."""
+    """A file attached to the run: NC program, job file, stock STL."""
 
     name: str
     media_type: str
@@ -29,9 +29,10 @@ class Attachment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolRecord:
-    """A tool as a viewer needs it: its name and its profile of revolution.
+    """A tool as viewers need it: its name and the profile of its surface of revolution.
 
     Attributes:
+        number: tool number.
         description: e.g. ``ball D8 z2``.
         profile_mm: shape (n, 2): radius and height above the tip, upwards from (0, 0), shank and holder included.
     """
@@ -43,14 +44,18 @@ class ToolRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunHeader:
-    """First record of a run.
+    """First record of a run: stock, tools, settings and attached files.
 
     Attributes:
+        twin_version: version of the program that computed the run.
+        program: file name of the NC program.
         stock_bounds_mm: shape (2, 3), lower and upper corner of the stock.
         slice_pitch_mm: pitch of the slices along x, y and z.
-        force_on: always ``"tool"`` in records; readers turn the sign for the workpiece.
+        tools: the tools of the job.
         planned_time_s: machine time of the whole program.
-        parameters: every setting that shaped the result, by job-file key path, as text.
+        force_on: always ``"tool"`` in records; readers change the sign for the workpiece.
+        parameters: every setting that affects the result, as text by job-file key path.
+        attachments: job file, NC program, and stock STL if there is one.
     """
 
     twin_version: str
@@ -66,15 +71,15 @@ class RunHeader:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Engagement:
-    """Summary of the tool's contact with the stock in one step; all zero in air.
+    """Engagement of the tool with the stock in one step; all zero in air.
 
     Attributes:
-        axial_depth_mm: height from the lowest to the highest engaged edge element.
-        radial_width_mm: width of the engaged part of the tool's front across the feed direction.
+        axial_depth_mm: axial depth of cut, from the lowest to the highest engaged edge element.
+        radial_width_mm: radial depth of cut, the width of the engaged tool surface across the feed direction.
         arc_rad: engaged angle about the tool axis, over all heights.
-        chip_thickness_mm: largest uncut chip thickness on an engaged element.
-        removal_rate_mm3_s: engaged front area projected on the feed direction times the feed.
-        cutting: whether anything is engaged.
+        chip_thickness_mm: largest uncut chip thickness of the engaged elements.
+        removal_rate_mm3_s: material removal rate: engaged area projected on the feed direction, times the feed.
+        cutting: whether any element is engaged.
     """
 
     axial_depth_mm: float = 0.0
@@ -87,14 +92,14 @@ class Engagement:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceSamples:
-    """Forces at the spindle-angle steps inside one step; ``n`` may be 0.
+    """Cutting forces at the spindle-angle steps inside one step of the motion; ``n`` may be 0.
 
     Attributes:
         t_s: shape (n,), machine time of each sample, increasing.
-        spindle_angle_rad: shape (n,), angle of the spindle since program start, continuous through the program;
-            negative rates under M4. Angle 0 has the tip of tooth 0 at +x.
+        spindle_angle_rad: shape (n,), spindle angle since program start, continuous through the program; it falls
+            under M4. At angle 0 the tip of tooth 0 points to +x.
         force_n: shape (n, 3), force on the tool in machine axes x, y, z.
-        torque_nm: shape (n,), torque of the cutting forces about the tool axis that the spindle must supply, >= 0.
+        torque_nm: shape (n,), torque about the tool axis that the spindle must supply, >= 0.
         power_w: shape (n,), torque times spindle speed.
     """
 
@@ -107,17 +112,19 @@ class ForceSamples:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """One small tool motion of the replay.
+    """One small tool motion of the replay, with its engagement and force samples.
 
     Attributes:
-        index: counts the steps from 0.
-        t_s, duration_s: start of the step and how long it takes.
+        index: number of the step, from 0.
+        t_s, duration_s: machine time at its start, and its duration.
         start_mm, end_mm: tool tip in the workpiece frame.
         nc_line: line of the NC program.
         tool: tool number.
-        rapid: True for positioning motions.
-        feed_mm_min: speed along the path (the rapid rate for rapids), 0 in a dwell.
-        spindle_rpm: signed, positive for M3, negative for M4, 0 stopped.
+        rapid: whether it is a rapid (positioning) motion.
+        feed_mm_min: speed along the path (the rapid traverse rate for rapids), 0 in a dwell.
+        spindle_rpm: spindle speed, positive for M3, negative for M4, 0 with the spindle stopped.
+        engagement: of the tool with the stock.
+        samples: forces.
     """
 
     index: int
@@ -136,12 +143,14 @@ class Step:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NcEvent:
-    """Something the program said.
+    """An event of the NC program that is not a motion.
 
     Attributes:
+        t_s: machine time.
+        nc_line: line of the NC program.
         kind: ``block`` (a block begins), ``tool`` (tool change), ``spindle``, ``coolant``, ``stop``, ``dwell``,
-            ``notice`` (a word without effect here).
-        text: the block's text, or what happened, e.g. ``T2 ball D8``, ``M3 S3600``.
+            ``notice`` (a word without effect in a replay).
+        text: the block's text, or a description of the event, e.g. ``T2 ball D8``, ``M3 S3600``.
     """
 
     t_s: float
@@ -152,13 +161,17 @@ class NcEvent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Collision:
-    """Something touched the stock that must not, or cut when it must not.
+    """A collision with the stock, or a cut by a motion that must not cut.
 
     Attributes:
-        kind: ``rapid`` (positioning motion through the stock), ``shank``, ``holder``, ``spindle-stopped``.
-        point_mm: tool tip where it began.
-        volume_mm3: material swept by the offending body in this motion.
-        message: one line for people, with NC line and place.
+        t_s: machine time at which it began.
+        nc_line: line of the NC program.
+        tool: tool number.
+        kind: ``rapid`` (rapid motion through the stock), ``shank`` or ``holder`` (touches the stock), or
+            ``spindle-stopped`` (feed motion through the stock with the spindle stopped).
+        point_mm: tool tip at its beginning.
+        volume_mm3: material swept by the colliding body in this motion.
+        message: one human-readable line with NC line and position.
     """
 
     t_s: float
@@ -172,11 +185,12 @@ class Collision:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkpiecePatch:
-    """The surface of one block of the workpiece as it is from ``t_s`` on; replaces the patch of the same name.
+    """The surface of one block of the workpiece from ``t_s`` on; it replaces the patch of the same name.
 
     Attributes:
-        patch: name of the block, stable through a run, e.g. ``x0_y2``.
-        vertices_mm: shape (n, 3) float32; n may be 0 where nothing is left.
+        t_s: machine time.
+        patch: name of the block, the same throughout a run, e.g. ``x0_y2``.
+        vertices_mm: shape (n, 3) float32; n is 0 where no material is left.
         normals: shape (n, 3) float32, outward unit normals.
         triangles: shape (m, 3) uint32, counter-clockwise seen from outside.
     """
@@ -190,7 +204,19 @@ class WorkpiecePatch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolSummary:
-    """What one tool did; peaks with the NC line where they occurred. Force order: x, y, z, resultant."""
+    """Times, removed volume and forces of one tool.
+
+    Attributes:
+        number: tool number.
+        description: e.g. ``ball D8 z2``.
+        cutting_time_s, air_time_s, rapid_time_s: time in cut, at feed in air, and in rapid motion.
+        removed_volume_mm3: volume of material removed.
+        peak_force_n: largest absolute x, y, z and largest resultant.
+        mean_force_n: mean of x, y, z and resultant over its cutting time.
+        peak_torque_nm, mean_torque_nm: torque that the spindle must supply.
+        peak_power_w: largest power.
+        peak_line: NC line of the largest resultant.
+    """
 
     number: int
     description: str
@@ -208,13 +234,20 @@ class ToolSummary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSummary:
-    """Last record of a run that came to its end (or was ended by the user: ``complete`` is False).
+    """Last record of a run: its totals.
 
     Attributes:
-        mean_force_n: mean of x, y, z and resultant over cutting time.
+        complete: whether the program was replayed to its end; False after Ctrl-C or a collision in a strict replay.
+        machine_time_s: machine time of what was replayed, motions, dwells and tool changes.
+        cutting_time_s: part of it in cut.
+        removed_volume_mm3: volume of material removed.
+        steps, samples: number of steps and of force samples.
         peak_force_n: largest absolute x, y, z and largest resultant.
+        mean_force_n: mean of x, y, z and resultant over the cutting time.
+        collisions: number of collisions.
+        tools: totals by tool.
         top_lines: NC line, its text, and its highest resultant force, highest first, at most 10.
-        digest: hash of every force sample and of the final slices' areas: equal runs have equal digests.
+        digest: hash of all force samples and of the final slices' areas: equal runs have equal digests.
     """
 
     complete: bool

@@ -1,4 +1,4 @@
-"""Every tolerance of the program in one value, each with its reason."""
+"""The tolerances of geometry and physics in one value, each with its reason."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ class Tolerance:
     """Tolerances of geometry and physics; lengths scale with the slice pitch, so that scaled parts behave alike.
 
     Attributes:
-        chord_mm: how far a polygon's chord may stand off the curve it stands for. Tools are enlarged by this much, so
-            that their polygons are circumscribed: a point of the tool's surface is never left in the material by it.
-        depth_mm: how far a point must lie inside a swept volume to count as removed; hides rounding on its surface.
-        gate: least n.f (cosine between edge normal and feed) that counts as front of the tool; hides rounding at 0.
+        chord_mm: largest distance between a polygon's chord and the curve that it approximates. Tools are enlarged by
+            this much, so that their polygons are circumscribed and no point of the tool's surface stays in material.
+        depth_mm: depth inside a swept volume from which a point counts as removed; hides rounding on its surface.
+        gate: least n.f (cosine between edge normal and feed) that counts as the front of the tool; hides rounding at 0.
         chip: least uncut chip thickness, relative to the feed per tooth, that makes a chip and an edge force.
-        contact_mm3: material that a body must sweep before touching it is called a collision.
-        clearance_mm: how much thinner than drawn shank and holder are taken, so that a shank of the cutter's own
-            diameter may rub along the wall that the cutter made.
+        contact_mm3: volume of material that a body must sweep for a collision.
+        clearance_mm: reduction of the radius of shank and holder, so that a shank of the cutter's own diameter may rub
+            along the wall that the cutter made.
+
     """
 
     chord_mm: float

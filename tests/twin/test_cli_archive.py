@@ -34,7 +34,7 @@ def archive(tmp_path: Path) -> Path:
     return write_run(tmp_path / "run.mcap")
 
 
-def test_info_tells_what_is_in_the_file(archive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_info_prints_the_contents_of_the_file(archive: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["info", str(archive)]) == 0
     lines = [" ".join(line.split()) for line in capsys.readouterr().out.splitlines()]
     for line in (
@@ -42,7 +42,7 @@ def test_info_tells_what_is_in_the_file(archive: Path, capsys: pytest.CaptureFix
         "machine time 0:07.6 removed 590.0 mm³",
         "program slot.nc",
         "covers 0:07.6 of 0:07.6",
-        "stock, mm X 0 to 60, Y 0 to 30, Z -20 to 0; slices 0.1 x 0.1 x 0.1 apart",
+        "stock, mm X 0 to 60, Y 0 to 30, Z -20 to 0; slice pitch 0.1 x 0.1 x 0.1",
         "tools T1 ball D8 z2",
         "messages /engagement 38",
     ):
@@ -64,7 +64,7 @@ def test_info_as_json(archive: Path, capsys: pytest.CaptureFixture[str]) -> None
 def test_info_of_a_run_that_was_cut_off(archive: Path, capsys: pytest.CaptureFixture[str]) -> None:
     archive.write_bytes(archive.read_bytes()[: archive.stat().st_size * 2 // 3])
     assert run(["info", str(archive)]) == 0
-    assert "cut off: what was complete is readable" in capsys.readouterr().out
+    assert "incomplete: readable up to its last complete record" in capsys.readouterr().out
     assert run(["info", str(archive), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert result["intact"] is False and result["summary"] is None
@@ -96,11 +96,11 @@ def test_export_turns_forces_as_asked(
     assert np.all(sign * fy >= 0.0)
 
 
-def test_export_refuses_a_file_that_is_there(archive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_export_refuses_an_existing_file(archive: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = archive.with_name("forces.parquet")
     assert run(["export", str(archive), str(out)]) == 0
     assert run(["export", str(archive), str(out)]) == 1
-    assert f"error: {out}: is there already" in capsys.readouterr().err
+    assert f"error: {out}: already exists" in capsys.readouterr().err
     assert run(["export", str(archive), str(out), "--force"]) == 0
 
 
@@ -110,7 +110,7 @@ def test_view_writes_a_recording(archive: Path, capsys: pytest.CaptureFixture[st
     assert capsys.readouterr().out == f"Recording  {out}\n"
     assert out.stat().st_size > 0
     assert run(["view", str(archive), "--rrd", str(out)]) == 1
-    assert capsys.readouterr().err == f"error: {out}: is there already; replace it with --force\n"
+    assert capsys.readouterr().err == f"error: {out}: already exists; replace it with --force\n"
 
 
 @pytest.mark.parametrize("command", [["info"], ["view"], ["export"], ["mesh"]], ids=str)

@@ -128,7 +128,7 @@ def test_strict_ends_at_the_first_collision_and_keeps_it(
     use()
     assert run(["replay", str(job), "--strict", "--quiet"]) == 3
     assert capsys.readouterr().err == (
-        "error: ended at a collision (--strict): "
+        "error: stopped at a collision (--strict): "
         "slot.nc:5: T1: rapid motion through the stock, from X60 Y15 Z-2, 12.5 mm3\n"
     )
     *_, collision, summary = records(job.parent / "recordings" / "slot.mcap")
@@ -151,7 +151,7 @@ def test_a_wish_to_stop_ends_the_run_in_order(
     assert run(["replay", str(job)]) == code
     captured = capsys.readouterr()
     assert "ended early, at 0:07.6 of 0:07.6" in captured.out
-    assert captured.err == ("warning: stopped at 7.6 s of machine time; outputs hold the run up to there\n")
+    assert captured.err == ("warning: stopped at 7.6 s of machine time; outputs have the run up to there\n")
     info = run_info(job.parent / "recordings" / "slot.mcap")
     assert info.intact and not info.complete
     assert info.counts["/engagement"] == 10
@@ -179,7 +179,7 @@ def test_a_file_that_is_there_is_refused_before_anything_is_replayed(
     archive.parent.mkdir()
     archive.write_text("mine")
     assert run(["replay", str(job)]) == 1
-    assert capsys.readouterr().err == f"error: {archive}: is there already; replace it with --force\n"
+    assert capsys.readouterr().err == f"error: {archive}: already exists; replace it with --force\n"
     assert archive.read_text() == "mine"
     assert fake.job is None
     assert run(["replay", str(job), "--force", "-q"]) == 0
@@ -303,8 +303,8 @@ def test_a_path_that_misses_the_stock_is_a_warning(use: Use, job: Path, capsys: 
     use(collision=False, removed_volume_mm3=0.0)
     assert run(["replay", str(job), "-q"]) == 0
     assert capsys.readouterr().err.splitlines()[0] == (
-        "warning: nothing was cut: the feed motions pass X -6..66 Y 15..15 Z -2..-2, the stock is at X 0..60 Y 0..30 "
-        "Z -20..0; check stock, machine.offsets and the tools' length_mm in the job"
+        "warning: no material was cut: the feed motions are at X -6..66 Y 15..15 Z -2..-2, "
+        "the stock is at X 0..60 Y 0..30 Z -20..0; check stock, machine.offsets and the tools' length_mm in the job"
     )
 
 

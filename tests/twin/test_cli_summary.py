@@ -60,7 +60,7 @@ def test_the_summary_of_a_run() -> None:
         "   4    110.5  N40 G1 X66 F600",
         "",
         "1 collision",
-        "line  tool  what                     times   mm³  first at       X       Y       Z",
+        "line  tool  collision                count   mm³  first at       X       Y       Z",
         "---",
         "   5    T1  rapid through the stock      2  13.8    0:07.4  60.000  15.000  -2.000",
         "",
@@ -100,7 +100,7 @@ def test_collisions_beyond_the_first_ten_lines_are_counted() -> None:
     lines = printed(replace(SUMMARY, collisions=13), watch)
     assert "13 collisions" in lines
     assert sum("rapid through the stock" in line for line in lines) == 10
-    assert any("and on 3 more lines" in line for line in lines)
+    assert any("and on 3 further lines" in line for line in lines)
 
 
 def test_everything_fits_a_terminal_of_100_columns() -> None:
@@ -141,7 +141,7 @@ def test_words_without_effect_are_named_once_each() -> None:
         watch.take(NcEvent(t_s=0.0, nc_line=line, kind="notice", text=text))
     assert watch.warnings(replace(SUMMARY, collisions=0)) == [
         *("line 1: G64 (and 2 more like it)", "line 3: M50", "line 4: A", "line 5: B", "line 6: C"),
-        "1 more kind of words without effect, see the archive",
+        "1 more kind of words without effect; see the archive",
     ]
 
 
@@ -149,7 +149,7 @@ def test_a_program_without_feed_motions_is_told_so() -> None:
     watch = Watch()
     watch.take(HEADER)
     (warning,) = watch.warnings(replace(SUMMARY, removed_volume_mm3=0.0))
-    assert warning.startswith("nothing was cut: there is no feed motion, the stock is at X 0..60 Y 0..30 Z -20..0;")
+    assert warning.startswith("no material was cut: there is no feed motion, the stock is at X 0..60 Y 0..30 Z -20..0;")
 
 
 @pytest.mark.parametrize(

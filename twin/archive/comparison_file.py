@@ -1,4 +1,4 @@
-"""Comparisons of a run with a measured log in MCAP files: both forces sample by sample, and what was found as JSON."""
+"""Comparisons of a run with a measured log in MCAP files: both forces sample by sample, and the results as JSON."""
 
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ def write_comparison(
     *,
     force: bool = False,
 ) -> None:
-    """Write a comparison; the file has its name only when it is whole.
+    """Write a comparison; the file has its name only when it is complete.
 
     Args:
-        result: JSON object of all that was found.
+        result: JSON object of all results.
         heads: a few of its values as text, for any MCAP tool to show.
-        force: replace a file that is there.
+        force: replace a file that exists.
 
     Raises:
-        ArchiveError: it is there, or cannot be written; nothing is left then.
+        ArchiveError: the file exists already, or cannot be written; nothing is left then.
     """
     partial = PartialFile(Path(path), force=force)
     try:
@@ -88,10 +88,10 @@ def is_comparison(path: str | PathLike[str]) -> bool:
 
 
 def read_comparison(path: str | PathLike[str]) -> tuple[ComparedForces, dict[str, Any]]:
-    """The forces of a comparison's file, and its result.
+    """The forces in a comparison's file, and its results.
 
     Raises:
-        ArchiveError: no such file, or none of a comparison.
+        ArchiveError: no such file, or not the file of a comparison.
     """
     from mcap.reader import make_reader
 

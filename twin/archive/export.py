@@ -26,7 +26,7 @@ def read_forces(path: str | PathLike[str], on: ForceOn = "tool") -> pa.Table:
         on: the body that feels the force, ``"tool"`` or ``"workpiece"`` (opposite sign).
 
     Returns:
-        columns t_s, spindle_angle_rad, fx_n, fy_n, fz_n, torque_nm, power_w, nc_line, tool (names say the unit).
+        columns t_s, spindle_angle_rad, fx_n, fy_n, fz_n, torque_nm, power_w, nc_line, tool (names have the unit).
 
     Raises:
         ArchiveError: see `twin.archive.read_run`; or an unknown ``on``.
@@ -42,14 +42,14 @@ def export_forces(run: str | PathLike[str], out: str | PathLike[str], on: ForceO
 
     Args:
         on: see `read_forces`.
-        force: replace ``out`` when it is there.
+        force: replace ``out`` if it exists.
 
     Returns:
         number of rows written.
 
     Raises:
-        ArchiveError: unknown suffix or ``on``; ``out`` is there; the run cannot be read; ``out`` cannot be written.
-            Nothing stands under the name ``out`` then.
+        ArchiveError: unknown suffix or ``on``; ``out`` exists; the run cannot be read; ``out`` cannot be written.
+            There is no file of the name ``out`` then.
     """
     target = Path(out)
     writer = _WRITERS.get(target.suffix.lower())
@@ -57,7 +57,7 @@ def export_forces(run: str | PathLike[str], out: str | PathLike[str], on: ForceO
         raise ArchiveError(f"{target}: suffix {target.suffix!r} is not known, expected {' or '.join(_WRITERS)}")
     _check_on(on)
     if target.exists() and not force:
-        raise ArchiveError(f"{target}: is there already; replace it with --force")
+        raise ArchiveError(f"{target}: already exists; replace it with --force")
     tables = force_tables(read_run(run), on)
     first = next(tables)
     rows = 0
@@ -75,7 +75,7 @@ def _check_on(on: str) -> None:
 
 @contextmanager
 def _replacing(target: Path) -> Iterator[Path]:
-    """A name to write to, which becomes the target when all went well and is removed when not."""
+    """Path to write to; it becomes the target on success and is removed otherwise."""
     partial = partial_path(target)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)

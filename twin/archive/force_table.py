@@ -1,4 +1,4 @@
-"""Forces of a run as Arrow tables: one row a spindle-angle step."""
+"""Forces of a run as Arrow tables: one row per spindle-angle step."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 #: Columns in their order.
 COLUMNS = ("t_s", "spindle_angle_rad", "fx_n", "fy_n", "fz_n", "torque_nm", "power_w", "nc_line", "tool")
 _INTEGER = ("nc_line", "tool")
-#: Rows that one table of a stream has at least, but for the last one.
+#: Least number of rows of a table in a stream, except for the last one.
 BATCH_ROWS = 1 << 18
 
 
@@ -24,7 +24,7 @@ def force_arrays(steps: Iterable[Step], on: ForceOn = "tool") -> dict[str, np.nd
     """Samples of many steps, joined.
 
     Args:
-        on: the body that feels the force; on the workpiece it is opposite in sign, torque and power stay.
+        on: the body on which the force acts; on the workpiece it has the opposite sign, torque and power have not.
 
     Returns:
         an array of shape (n,) for each of `COLUMNS`.
@@ -40,7 +40,7 @@ def force_arrays(steps: Iterable[Step], on: ForceOn = "tool") -> dict[str, np.nd
 
 
 def force_schema(on: ForceOn = "tool") -> pa.Schema:
-    """Types of `COLUMNS`; the metadata ``force_on`` says which body the forces act on."""
+    """Types of `COLUMNS`; the metadata ``force_on`` names the body on which the forces act."""
     import pyarrow as pa
 
     fields = [pa.field(c, pa.int32() if c in _INTEGER else pa.float64(), nullable=False) for c in COLUMNS]
@@ -60,7 +60,7 @@ def force_tables(records: Iterable[Record], on: ForceOn = "tool") -> Iterator[pa
 
 
 def joined_arrays(records: Iterable[Record]) -> dict[str, np.ndarray[Any, Any]]:
-    """All force samples among records, as `force_arrays`; needs little more memory than they do."""
+    """All force samples among records, as `force_arrays`, with little more memory than the arrays themselves."""
     batches = [force_arrays(steps) for steps in _batches(records)]
     return {name: np.concatenate([batch.pop(name) for batch in batches]) for name in COLUMNS}
 

@@ -1,7 +1,7 @@
 """Whole MCAP message records of the force topic, encoded and decoded as arrays.
 
-A `twin.CuttingForce` with every field written, zeros too, has a fixed size: so a run of force messages, record heads
-and field tags included, is an array of one packed numpy type, and a million of them need no loop in Python.
+A `twin.CuttingForce` with every field written, zeros too, has a fixed size. So consecutive force messages, record heads
+and field tags included, are an array of one packed numpy type, and a million of them need no loop in Python.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def _record_type() -> np.dtype[np.void]:
 
 
 RECORD: np.dtype[np.void] = _record_type()
-#: The doubles of a record follow one another, each behind its tag: t_s, angle, fx, fy, fz, torque, power.
+#: The doubles of a record follow one another, each after its tag: t_s, angle, fx, fy, fz, torque, power.
 _DOUBLES = sum(kind == "double" for _, _, kind in _FIELDS)
 _DOUBLE_STRIDE = 9
 _FIRST_DOUBLE = RECORD.itemsize - len(_FIELDS) - 8 * _DOUBLES - 4 * (len(_FIELDS) - _DOUBLES) + 1
@@ -52,7 +52,7 @@ class ForceLayout:
     """The force records of one channel.
 
     Attributes:
-        template: shape (), a record with everything that is the same in all of them.
+        template: shape (), a record with all values that are the same in every one.
         constant: shape (k,), positions of the bytes that never change.
         pattern: shape (k,), those bytes.
     """
@@ -100,14 +100,14 @@ class ForceLayout:
         return records
 
     def match(self, data: bytes, start: int, limit: int) -> NDArray[np.void]:
-        """The force records that stand one after another in a chunk.
+        """Consecutive force records in a chunk.
 
         Args:
-            start: where the first one begins.
-            limit: at most so many.
+            start: position of the first one.
+            limit: largest number of records.
 
         Returns:
-            shape (n,) of `RECORD`, a view of ``data``; n is 0 where the record has another layout.
+            shape (n,) of `RECORD`, a view of ``data``; n is 0 if the record has another layout.
         """
         count = min(limit, (len(data) - start) // RECORD.itemsize)
         raw = np.frombuffer(data, np.uint8, count * RECORD.itemsize, start).reshape(count, RECORD.itemsize)
@@ -131,7 +131,7 @@ def _columns(samples: Sequence[ForceSamples]) -> dict[str, FloatArray]:
 
 
 def row(message: Any) -> NDArray[np.void]:
-    """One decoded protobuf message as a record array of length 1: the way for other writers' payloads."""
+    """One decoded protobuf message as a record array of length 1, for the payloads of other writers."""
     record = np.zeros(1, RECORD)
     for name, _, _ in _FIELDS:
         record[name] = getattr(message, name)

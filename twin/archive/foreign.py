@@ -34,14 +34,14 @@ def read_numbers(path: str | PathLike[str], topic: str | None = None) -> tuple[s
     """The numbers of the messages on a topic, nested fields joined by dots.
 
     Args:
-        topic: None for the one topic that has messages that can be read.
+        topic: None for the only topic with readable messages.
 
     Returns:
         the topic, and shape (n,) arrays by field; ``t_s`` is added from the log time, counted from the first message,
-        where no field says a time.
+        if no field is a time.
 
     Raises:
-        ArchiveError: no MCAP file; a topic that is unknown, cannot be read, or must be chosen.
+        ArchiveError: not an MCAP file; a topic that is unknown, cannot be read, or must be chosen.
     """
     path = Path(path)
     try:
@@ -54,7 +54,7 @@ def read_numbers(path: str | PathLike[str], topic: str | None = None) -> tuple[s
     except ArchiveError:
         raise
     except Exception as error:  # the libraries raise many kinds on damaged files
-        raise ArchiveError(f"{path}: no MCAP file that can be read: {error}") from error
+        raise ArchiveError(f"{path}: not a readable MCAP file: {error}") from error
     if len(rows) < 2:
         raise ArchiveError(f"{path}: {len(rows)} messages on {found}, expected at least 2")
     names = dict.fromkeys(name for _, row in rows for name in row)
@@ -75,8 +75,8 @@ def _choose(path: Path, summary: Any, topic: str | None) -> str:
         return topic
     likely = [t for t in known if "force" in t.lower()] or known
     if len(likely) != 1:
-        told = ", ".join(f"{c.topic} ({c.message_encoding})" for c in channels) or "none"
-        raise ArchiveError(f"{path}: which topic holds the forces? topics are {told}; choose one by --group TOPIC")
+        names = ", ".join(f"{c.topic} ({c.message_encoding})" for c in channels) or "none"
+        raise ArchiveError(f"{path}: which topic has the forces? topics are {names}; choose one by --group TOPIC")
     return likely[0]
 
 
@@ -97,7 +97,7 @@ def _class(schema: Schema) -> Any:
 
 
 def _fields(message: Any, prefix: str) -> Iterator[tuple[str, float]]:
-    """Numbers of a protobuf message; fields that are not set count as zero, as the format has it."""
+    """Numbers of a protobuf message; fields that are not set are zero, as the format defines."""
     for field in message.DESCRIPTOR.fields:
         if field.is_repeated or field.cpp_type in (field.CPPTYPE_STRING, field.CPPTYPE_ENUM):
             continue

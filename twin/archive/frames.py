@@ -1,4 +1,4 @@
-"""The records of an MCAP file one after another, also of one that ends in the middle of a record."""
+"""The records of an MCAP file in order, also of a file that ends within a record."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ from twin.record import Attachment
 
 #: Opcode and length before every record.
 HEAD = struct.Struct("<BQ")
-#: What the libraries raise on bytes that contradict themselves.
+#: Errors that the libraries raise on inconsistent bytes.
 DAMAGE = (ValueError, KeyError, TypeError, struct.error, McapError, DecodeError)
-#: Footer record and closing magic: the last bytes of a file that is whole.
+#: Footer record and closing magic: the last bytes of a complete file.
 FOOTER_BYTES = HEAD.size + 20 + len(MAGIC)
 
 
 def stream(body: bytes) -> ReadDataStream:
-    """What the ``read`` functions of `mcap.records` read from."""
+    """Input of the ``read`` functions of `mcap.records`."""
     return ReadDataStream(io.BytesIO(body))
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One record as it stands in the file.
+    """One record of the file.
 
     Attributes:
-        offset: where it begins.
+        offset: position of its first byte.
         body: its content, without opcode and length.
     """
 
@@ -57,7 +57,7 @@ class RunFile:
     """A run's file, open for reading; a context manager.
 
     Raises:
-        ArchiveError: no such file, not an MCAP file, or not one of this program's.
+        ArchiveError: no such file, not an MCAP file, or one of another program.
     """
 
     def __init__(self, path: str | PathLike[str]) -> None:
@@ -74,7 +74,7 @@ class RunFile:
             raise
 
     def frames(self, start: int = len(MAGIC)) -> Iterator[Frame]:
-        """Records from a place on, up to the footer or to the last one that is there in full."""
+        """Records from a position on, up to the footer or to the last complete one."""
         offset = start
         while (frame := self._frame(offset)) is not None:
             yield frame
@@ -83,7 +83,7 @@ class RunFile:
                 return
 
     def footer(self) -> Footer | None:
-        """The footer, or None when the file does not end as a whole one does."""
+        """The footer, or None for an incomplete file."""
         start = self.size - FOOTER_BYTES
         if start < len(MAGIC) or self._read(self.size - len(MAGIC), len(MAGIC)) != MAGIC:
             return None
@@ -94,7 +94,7 @@ class RunFile:
         """The records inside a chunk.
 
         Raises:
-            ArchiveError: damaged, or packed by a method that is not known here.
+            ArchiveError: damaged, or compressed by an unknown method.
         """
         chunk = Chunk.read(stream(frame.body))
         data = self._decompress(chunk, frame.offset)
@@ -114,14 +114,14 @@ class RunFile:
         return Attachment(name=found.name, media_type=found.media_type, data=found.data)
 
     def damaged(self, offset: int) -> ArchiveError:
-        """The error for a record that contradicts itself."""
+        """The error for an inconsistent record."""
         return ArchiveError(f"{self.path}: damaged at byte {offset}")
 
     def _check_kind(self) -> None:
         if not self.size:
             raise ArchiveError(f"{self.path}: is empty, expected a run's MCAP file")
         if (begin := self._read(0, len(MAGIC))) != MAGIC:
-            what = "ends within its first bytes" if MAGIC.startswith(begin) else "is no MCAP file"
+            what = "ends within its first bytes" if MAGIC.startswith(begin) else "is not an MCAP file"
             raise ArchiveError(f"{self.path}: {what}, expected a run's MCAP file")
         first = self._frame(len(MAGIC))
         if first is None or first.opcode != Opcode.HEADER:
@@ -153,7 +153,7 @@ class RunFile:
         if chunk.compression == "":
             return chunk.data
         if chunk.compression != "zstd":
-            raise ArchiveError(f"{self.path}: packed by {chunk.compression!r}, expected 'zstd' or nothing")
+            raise ArchiveError(f"{self.path}: compressed by {chunk.compression!r}, expected 'zstd' or nothing")
         try:
             if zstandard.frame_content_size(chunk.data) not in (-1, chunk.uncompressed_size):
                 raise self.damaged(offset)

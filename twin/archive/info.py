@@ -1,4 +1,4 @@
-"""What a run's file holds, without reading all of it where its index tells."""
+"""Contents of a run's file, from its index where there is one."""
 
 from __future__ import annotations
 
@@ -17,14 +17,16 @@ from twin.record import RunHeader, RunSummary
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunInfo:
-    """What a run's file holds.
+    """Contents of a run's file.
 
     Attributes:
-        summary: None when the file ends before it.
+        path: the file.
+        header: first record of the run.
+        summary: None if the file ends before it.
         counts: number of messages on each topic.
         duration_s: machine time that the file covers.
         complete: whether the program was replayed to its end.
-        intact: whether the file itself is whole; False for what a killed run left.
+        intact: whether the file itself is complete; False for the file of a killed run.
         attachments: size in bytes of every attached file, by name.
     """
 
@@ -39,7 +41,7 @@ class RunInfo:
 
 
 def run_info(path: str | PathLike[str]) -> RunInfo:
-    """Look into a run's file: at its index when it is whole, else at all of it.
+    """Contents of a run's file: read from its index if it is complete, else from all of it.
 
     Raises:
         ArchiveError: as `read_run`.
@@ -69,7 +71,7 @@ def run_info(path: str | PathLike[str]) -> RunInfo:
 
 
 def _last_summary(decoder: Decoder) -> RunSummary | None:
-    """Go through all records for their counts; the summary, if there is one."""
+    """Read all records, for their counts; returns the summary if there is one."""
     found = None
     for record in decoder.records():
         found = record if isinstance(record, RunSummary) else found

@@ -1,4 +1,4 @@
-"""Records to protobuf payloads and back, one pair of functions a record kind (forces: `twin.archive.forces`)."""
+"""Records to protobuf payloads and back, one pair of functions per kind of record (forces: `twin.archive.forces`)."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ _STEP_FIELDS = ("t_s", "duration_s", "nc_line", "tool", "rapid", "feed_mm_min", 
 _LEVELS = {"notice": schemas.WARNING}
 _UPRIGHT = {"w": 1.0}
 
-#: A point of a cloud as viewers read it: place, normal, colour.
+#: A point of a cloud as viewers read it: position, normal, colour.
 POINT = np.dtype(
     [(name, "<f4") for name in ("x", "y", "z", "nx", "ny", "nz")]
     + [(c, "u1") for c in ("red", "green", "blue", "alpha")]
 )
 _STEEL_RGB = (176, 184, 196)
 _BRASS_RGB = (214, 176, 92)
-#: Unit vector towards the light that shades the points, and the share of it that reaches the shaded side.
+#: Unit vector towards the light that shades the points, and the share of the light on the side away from it.
 _LIGHT = (-0.36, -0.48, 0.8)
 _AMBIENT = 0.35
 #: Points around the axis, and their distance along the profile, of the drawn tool.
@@ -61,7 +61,7 @@ def to_step(message: Any, samples: ForceSamples) -> Step:
 
 
 def pose(t_s: float, tip_mm: tuple[float, float, float]) -> bytes:
-    """Where the tool's tip is, as a `foxglove.FrameTransform` from workpiece to tool."""
+    """Position of the tool tip, as a `foxglove.FrameTransform` from workpiece to tool."""
     return _payload(
         schemas.TRANSFORM,
         timestamp=_timestamp(t_s),
@@ -124,7 +124,7 @@ def to_collision(message: Any) -> Collision:
 
 
 def patch(record: WorkpiecePatch) -> bytes:
-    """A patch of the workpiece as a `foxglove.PointCloud` of its vertices, with its triangles beside."""
+    """A patch of the workpiece as a `foxglove.PointCloud` of its vertices, with its triangles in a further field."""
     cloud = _cloud(record.vertices_mm, record.normals, _STEEL_RGB)
     triangles = np.ascontiguousarray(record.triangles, "<u4").tobytes()
     return _cloud_payload(record.t_s, schemas.WORKPIECE_FRAME, cloud, patch=record.patch, triangles=triangles)
@@ -134,7 +134,7 @@ def to_patch(message: Any) -> WorkpiecePatch:
     """A patch from its `foxglove.PointCloud`.
 
     Raises:
-        ValueError: the cloud's data have another layout than this program writes.
+        ValueError: the cloud's data are not in this program's layout.
     """
     cloud = np.frombuffer(message.data, POINT)
     return WorkpiecePatch(
@@ -165,7 +165,7 @@ def _spread(profile_mm: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _cloud(points: NDArray[np.float32], normals: NDArray[np.float32], rgb: tuple[int, int, int]) -> NDArray[np.void]:
-    """Points of a cloud, shaded by their normals so that a viewer shows a surface and not a blot."""
+    """Points of a cloud, shaded by their normals so that a viewer shows a surface."""
     cloud = np.zeros(len(points), POINT)
     for values, names in ((points, ("x", "y", "z")), (normals, ("nx", "ny", "nz"))):
         for column, name in enumerate(names):

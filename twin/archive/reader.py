@@ -1,4 +1,4 @@
-"""A run's file back into the records that made it, with flat memory."""
+"""A run's file read back into the records that were written, with constant memory."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ _FOR_VIEWERS_ONLY = (schemas.POSE_TOPIC, schemas.TOOL_SHAPE_TOPIC)
 def read_run(path: str | PathLike[str]) -> Iterator[Record]:
     """The records of a run in the order in which they were written; arrays are read-only.
 
-    A file that ends early (a killed run, a copy cut short) gives what it holds in full: no step without all of its
-    samples, and no `RunSummary` when it did not come to that.
+    A file that ends early (a killed run, an incomplete copy) gives the records that are complete in it: no step without
+    all of its samples, and no `RunSummary` if it ends before that.
 
     Raises:
-        ArchiveError: no run's file, damaged, or so short that not even its header is whole.
+        ArchiveError: not the file of a run, damaged, or shorter than its header.
     """
     with RunFile(path) as file:
         yield from Decoder(file).records()
@@ -42,7 +42,7 @@ def read_run(path: str | PathLike[str]) -> Iterator[Record]:
 
 @dataclass(slots=True)
 class _PendingStep:
-    """A step whose samples are still coming."""
+    """A step whose samples are still to be read."""
 
     message: Any
     missing: int
@@ -80,7 +80,7 @@ class Decoder:
     _pending: _PendingStep | None = None
 
     def records(self) -> Iterator[Record]:
-        """All records of the file, the summary last wherever it stands."""
+        """All records of the file, the summary last wherever it is in the file."""
         self._files.clear()
         self._header = self._summary = None
         for frame in self.file.frames():
@@ -129,7 +129,7 @@ class Decoder:
             self._summary = meta.to_summary(entry.metadata)
 
     def _register(self, opcode: int, body: bytes) -> None:
-        """Keep a schema or a channel; a schema that is not this program's own is read by what it says itself."""
+        """Keep a schema or a channel; messages of another program's schema are decoded by that schema."""
         if opcode == Opcode.SCHEMA:
             schema = Schema.read(stream(body))
             self._schemas[schema.id] = schema
@@ -172,14 +172,14 @@ class Decoder:
         self.end_ns = max(self.end_ns, time_ns)
 
     def _force_block(self, channel: int, data: bytes, at: int) -> NDArray[np.void]:
-        """The force messages of the step at hand that stand here, as far as they have this program's layout."""
+        """The current step's force messages at this position, as far as they have this program's layout."""
         layout = self._layouts.get(channel)
         if layout is None or self._pending is None:
             return forces.NO_RECORDS
         return layout.match(data, at, self._pending.missing)
 
     def _message(self, channel: int, payload: bytes) -> Iterator[Record]:
-        """One message of any topic but those for viewers only."""
+        """One message of any topic except those for viewers only."""
         if channel not in self._classes:
             return
         topic, message = self._topics[channel], self._classes[channel].FromString(payload)
@@ -192,7 +192,7 @@ class Decoder:
             yield _CONVERTERS.get(topic, messages.to_patch)(message)
 
     def _take(self, block: NDArray[np.void]) -> Iterator[Record]:
-        """Give force messages to the step at hand; the step, when it has all of them."""
+        """Add force messages to the current step; yields the step when it has all of them."""
         if self._pending is None:
             return
         self._pending.take(block)

@@ -1,4 +1,4 @@
-"""The run's header and summary as MCAP attachments and metadata: text that any MCAP tool shows."""
+"""Header and summary of a run as MCAP attachments and metadata: text that any MCAP tool shows."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from twin.record import Attachment, RunHeader, RunSummary, ToolRecord, ToolSumma
 #: Attachment that holds the tool table; the names of the run's own attachments must differ.
 TOOL_TABLE = "twin.tools.json"
 JSON_TYPE = "application/json"
+#: Names in files: they stay as they are when modules are renamed, so that earlier archives can be read.
 PARAMETERS = "twin.parameters"
-#: Last entry of the head of a file: whoever finds it has everything of the `RunHeader` behind him.
+#: Last entry of the head of a file; everything else of the `RunHeader` is written before it.
 HEADER = "twin.run"
 SUMMARY = "twin.summary"
 
@@ -36,7 +37,7 @@ def tool_table(tools: Sequence[ToolRecord]) -> bytes:
 
 
 def header_metadata(header: RunHeader) -> dict[str, str]:
-    """What a header says of itself, less parameters, tools and attachments."""
+    """The values of a header without parameters, tools and attachments."""
     data = {name: str(getattr(header, name)) for name in _HEADER_TEXT}
     data |= {name: _json(getattr(header, name)) for name in _HEADER_JSON}
     return data | {"stock_bounds_mm": _json(header.stock_bounds_mm.tolist())}
@@ -46,7 +47,7 @@ def to_header(data: Mapping[str, str], parameters: Mapping[str, str], files: Seq
     """The header from metadata and attachments, the tool table among them.
 
     Raises:
-        KeyError, ValueError, TypeError: something is missing or no value of its kind.
+        KeyError, ValueError, TypeError: a value is missing or of a wrong kind.
     """
     table = {f.name: f for f in files}[TOOL_TABLE]
     tools = [
@@ -80,7 +81,7 @@ def to_summary(data: Mapping[str, str]) -> RunSummary:
     """The summary from metadata.
 
     Raises:
-        KeyError, ValueError, TypeError: something is missing or no value of its kind.
+        KeyError, ValueError, TypeError: a value is missing or of a wrong kind.
     """
     values = {name: _tuple(json.loads(data[name])) for name in _SUMMARY_JSON}
     tools = tuple(ToolSummary(**{n: _tuple(row[n]) for n in _TOOL_SUMMARY}) for row in json.loads(data["tools"]))

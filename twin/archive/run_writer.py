@@ -1,4 +1,4 @@
-"""Records of one run into an MCAP file, in the order in which they come."""
+"""Records of one run written to an MCAP file, in order."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from twin.archive.forces import to_ns
 from twin.errors import ArchiveError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, ToolRecord, WorkpiecePatch
 
-#: A chunk is completed when it holds this much, uncompressed ...
+#: A chunk is completed at this uncompressed size ...
 CHUNK_BYTES = 1 << 20
-#: ... or when its first record has waited so long: a killed run loses no more than that.
+#: ... or this long after its first record: a killed run loses no more than that.
 CHUNK_SECONDS = 2.0
 
 
 class RunWriter:
-    """Encodes records and completes chunks; `finish` makes the file a whole one.
+    """Encodes records and completes chunks; `finish` completes the file.
 
     Args:
         put: takes bytes and keeps all of them, or raises.
-        clock: seconds of a clock on the wall, for the age of a chunk only.
+        clock: seconds of a clock, for the age of a chunk.
     """
 
     def __init__(self, put: Callable[[bytes], None], *, clock: Callable[[], float] = time.monotonic) -> None:
@@ -38,14 +38,14 @@ class RunWriter:
 
     @property
     def started(self) -> bool:
-        """Whether the header has come."""
+        """Whether the header was written."""
         return self._file is not None
 
     def write(self, record: Record) -> None:
-        """Take one record.
+        """Write one record.
 
         Raises:
-            ArchiveError: the first record is no header, or a later one is, or two attachments have one name.
+            ArchiveError: the first record is not a header, or a later one is, or two attachments have the same name.
         """
         if isinstance(record, RunHeader):
             self._start(record)
@@ -99,7 +99,7 @@ class RunWriter:
                 file.add_metadata(meta.SUMMARY, meta.summary_metadata(record))
 
     def _step(self, file: Container, step: Step) -> None:
-        """A step in one piece: its shape and pose for viewers, its summary, its samples."""
+        """A step: tool shape and pose for viewers, engagement, force samples."""
         time_ns = _ns(step)
         if step.tool != self._tool:
             self._tool = step.tool
@@ -111,7 +111,7 @@ class RunWriter:
         self._last = step
 
     def _end_pose(self, file: Container) -> None:
-        """Where the tool stands after the last step."""
+        """Position of the tool after the last step."""
         if self._last is not None:
             end_s = self._last.t_s + self._last.duration_s
             file.add_message(schemas.POSE_TOPIC, to_ns(end_s), messages.pose(end_s, self._last.end_mm))

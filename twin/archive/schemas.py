@@ -2,7 +2,7 @@
 
 The descriptors are built from the tables below, so no protobuf compiler is needed, and every file carries them. The
 ``foxglove.*`` messages have the field numbers of the published schemas, so that viewers draw them; fields numbered
-from 100 are additions of this program (viewers skip them) that let a reader give back exactly what was written.
+from 100 are additions of this program, skipped by viewers, from which a reader restores exactly what was written.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ TOOL_SHAPE_TOPIC = "/machine/tool/shape"
 NC_TOPIC = "/nc"
 COLLISION_TOPIC = "/collision"
 COMPARISON_TOPIC = "/compare/force"
-#: Every patch of the workpiece has its own topic, ``/workpiece/<patch>``, so that a viewer replaces it alone.
+#: Every patch of the workpiece has its own topic, ``/workpiece/<patch>``, so that a viewer replaces only that patch.
 WORKPIECE_PREFIX = "/workpiece/"
 
 FORCE = "twin.CuttingForce"
@@ -53,7 +53,7 @@ _TIMESTAMP = "google.protobuf.Timestamp"
 
 Field: TypeAlias = tuple[str, int, str]
 
-#: Fields (name, number, type) of every message; ``repeated`` goes before the type, as in a .proto file.
+#: Fields (name, number, type) of every message; ``repeated`` precedes the type, as in a .proto file.
 MESSAGES: dict[str, tuple[Field, ...]] = {
     FORCE: (
         ("t_s", 1, "double"),
@@ -139,7 +139,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
     ),
 }
 
-#: Values of the enumerations, numbered from 0; an enumeration stands inside the message that its name begins with.
+#: Values of the enumerations, numbered from 0; an enumeration belongs to the message that its name begins with.
 ENUMS: dict[str, tuple[str, ...]] = {
     "foxglove.Log.Level": ("UNKNOWN", "DEBUG", "INFO", "WARNING", "ERROR", "FATAL"),
     "foxglove.PackedElementField.NumericType": (
@@ -175,7 +175,7 @@ def message_class(name: str) -> type[Any]:
 
 @cache
 def descriptor_set(name: str) -> bytes:
-    """Serialised ``FileDescriptorSet`` with a message and all that it needs: the data of an MCAP schema record."""
+    """Serialised ``FileDescriptorSet`` of a message and all messages in it: the data of an MCAP schema record."""
     files = descriptor_pb2.FileDescriptorSet()
     if _TIMESTAMP in {t.removeprefix("repeated ") for m in _closure(name) for _, _, t in MESSAGES[m]}:
         timestamp_pb2.DESCRIPTOR.CopyToProto(files.file.add())
@@ -187,7 +187,7 @@ def embedded_class(schema: bytes, name: str) -> type[Message]:
     """Class of a message described by a file's own schema, e.g. one written by another program.
 
     Raises:
-        TypeError, KeyError, google.protobuf.message.DecodeError: the bytes are no schema of that message.
+        TypeError, KeyError, google.protobuf.message.DecodeError: the bytes are not a schema of that message.
     """
     pool = descriptor_pool.DescriptorPool()
     for file in descriptor_pb2.FileDescriptorSet.FromString(schema).file:
@@ -196,7 +196,7 @@ def embedded_class(schema: bytes, name: str) -> type[Message]:
 
 
 def proto_text(name: str) -> str:
-    """A message as the text of a .proto file, for people."""
+    """A message as the human-readable text of a .proto file."""
     lines = [f"message {name.rpartition('.')[2]} {{"]
     for enum, values in _enums_of(name):
         body = " ".join(f"{value} = {number};" for number, value in enumerate(values))
@@ -218,7 +218,7 @@ def _closure(name: str) -> list[str]:
 
 
 def _file(name: str) -> descriptor_pb2.FileDescriptorProto:
-    """One file for one schema: the message with the messages that it contains."""
+    """The file of one schema: the message with the messages in it."""
     file = descriptor_pb2.FileDescriptorProto(name=f"{name}.proto", package=name.partition(".")[0], syntax="proto3")
     for message in _closure(name):
         if any(kind == _TIMESTAMP for _, _, kind in MESSAGES[message]):
@@ -247,7 +247,7 @@ def _fill(proto: descriptor_pb2.DescriptorProto, name: str) -> None:
 
 @cache
 def _pool() -> descriptor_pool.DescriptorPool:
-    """A pool of this program's own, so that it never meets other definitions of the same names."""
+    """A pool of this program's own, without other definitions of the same names."""
     pool = descriptor_pool.DescriptorPool()
     timestamp = descriptor_pb2.FileDescriptorProto()
     timestamp_pb2.DESCRIPTOR.CopyToProto(timestamp)

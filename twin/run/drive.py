@@ -10,7 +10,7 @@ from twin.record import Collision, Record, RunSummary
 
 
 class Replaying(Protocol):
-    """What is used of `twin.simulation.replay.Replay`."""
+    """The interface of `twin.simulation.replay.Replay` that is used here."""
 
     def __iter__(self) -> Iterator[Record]: ...
 
@@ -43,12 +43,13 @@ def drive(
     However it ends, the last record written is a `RunSummary`.
 
     Args:
+        replay: the replay.
         write: takes every record.
         strict: end at the first collision, which is still written.
-        stopped: whether to end after the record at hand.
+        stopped: whether to end after the current record.
 
     Raises:
-        TwinError, GcodeError: what cannot be replayed or written.
+        TwinError, GcodeError: the program cannot be replayed, or an output cannot be written.
     """
     refused: Collision | None = None
     for record in replay:

@@ -1,4 +1,4 @@
-"""The patches of a drawn workpiece joined to one mesh."""
+"""The patches of the workpiece's surface joined to one mesh."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from twin.workpiece.to_mesh import SurfaceMesh
 
 
 def joined(patches: Iterable[WorkpiecePatch]) -> SurfaceMesh:
-    """Put patches together; vertices at one place become one, and triangles without extent go."""
+    """Join patches; vertices at the same position are merged, and triangles without area removed."""
     full = [patch for patch in patches if len(patch.triangles)]
     if not full:
         return SurfaceMesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3), np.int64))

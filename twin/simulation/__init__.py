@@ -1,1 +1,1 @@
-"""The parts of a replay: what the job sets up, the spindle's clock, the totals of a run."""
+"""Replay of a job (flow A): setup, spindle clock, material, engagement and forces of steps, records, totals."""

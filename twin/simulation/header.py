@@ -1,4 +1,4 @@
-"""The first record of a run: everything that shaped it, so that the archive alone can explain its numbers."""
+"""The first record of a run: every setting and input file, so that the archive alone explains its numbers."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def run_header(job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], plan
 
 
 def _flat(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
-    """Nested settings as (key path, text) pairs; settings that are not given are left out."""
+    """Nested settings as (key path, text) pairs; settings that are not given are omitted."""
     if isinstance(value, Mapping):
         for key, inner in value.items():
             yield from _flat(inner, f"{path}.{key}" if path else str(key))

@@ -9,7 +9,7 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.jit import njit
 
-#: What the entries of `measure` mean.
+#: Entries of the result of `measure`.
 SUMS, PEAKS = slice(0, 5), slice(5, 11)
 
 

@@ -11,7 +11,7 @@ _SPINDLE_WORDS = {1: "M3", -1: "M4", 0: "M5"}
 
 
 def nc_event(event: Event, t_s: float, tools: Mapping[int, str]) -> NcEvent:
-    """Describe an event that is no motion.
+    """Describe an event that is not a motion.
 
     Args:
         tools: description of each tool by number.

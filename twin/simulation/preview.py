@@ -65,13 +65,13 @@ class Preview:
             yield patch_mesh(workpiece, self._grid, patch, 0.0)
 
     def frame(self, material: Material, t_s: float) -> Iterator[WorkpiecePatch]:
-        """What has changed, if it is time for the next key frame."""
+        """The changed patches, if it is time for the next key frame."""
         if t_s >= self._next_s:
             self._next_s = t_s + self._every_s
             yield from self.changes(material, t_s)
 
     def changes(self, material: Material, t_s: float) -> Iterator[WorkpiecePatch]:
-        """The patches in which material was removed since they were drawn."""
+        """The patches in which material was removed since they were last drawn."""
         boxes = material.take_changed()
         if self._grid is None:
             return

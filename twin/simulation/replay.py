@@ -100,11 +100,11 @@ def _begun(
     Args:
         ends: shape (n + 1, 3), the ends of n steps.
         feed: shape (3,), unit vector along them.
-        pending: sweeps that are not out of the slices yet.
+        pending: sweeps that are not yet subtracted from the slices.
         turns: times and spindle angles of each step's samples.
 
     Yields:
-        Number of the first step, the samples of each, and what waits for the answer.
+        Number of the first step, the samples of each, and a function that waits for the answer.
     """
     for first in range(0, len(ends) - 1, _STEPS_TOGETHER):
         part = ends[first : first + _STEPS_TOGETHER + 1]
@@ -158,7 +158,7 @@ class Replay:
 
     @property
     def workpiece(self) -> TriSlices:
-        """The slices as they are now, less what is still to be subtracted until the end."""
+        """The slices; until the end of the replay, the newest sweeps are not yet subtracted from them."""
         return self._setup.material.workpiece
 
     def summary(self, *, complete: bool = False) -> RunSummary:

@@ -1,7 +1,7 @@
 """Engagement and forces of many steps together, in threads.
 
-Steps whose material is settled do not depend on each other: they are asked in parts of a fixed size, and a part gives
-the same numbers to the last bit whichever thread works on it, and however many there are.
+Steps whose material no longer changes do not depend on each other. They are solved in parts of a fixed size, and a part
+gives the same numbers to the last bit, whichever thread works on it and however many there are.
 """
 
 from __future__ import annotations
@@ -28,11 +28,12 @@ PART = 16
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solved:
-    """What one step comes to.
+    """Engagement and forces of one step.
 
     Attributes:
-        engagement: its summary.
-        loads: shape (n, 4), Fx, Fy, Fz in N and torque in N mm at the step's samples; None in air and without a model.
+        engagement: of the tool with the material.
+        loads: shape (n, 4), Fx, Fy, Fz in N and torque in N mm at the step's samples; None in air and without a force
+            model.
     """
 
     engagement: Engagement
@@ -43,7 +44,7 @@ IN_AIR = Solved(NO_ENGAGEMENT, None)
 
 
 class StepSolver:
-    """Asks steps of one workpiece.
+    """Solves the steps of tools in one workpiece.
 
     Args:
         threads: how many parts are worked on at a time.
@@ -62,18 +63,19 @@ class StepSolver:
         spindle_rpm: FloatArray,
         pending: SweptVolume,
     ) -> Callable[[], list[Solved]]:
-        """Begin to find engagement and forces of steps.
+        """Begin to solve steps: their engagement and forces.
 
-        The material must stay as it is until the answer is there.
+        The material must not change until the answer is there.
 
         Args:
-            at: where the tool is asked, one position a step.
+            tool: the moving tool.
+            at: positions of the tool, one per step.
             spindle_rad: signed spindle angles of each step's samples.
             spindle_rpm: shape (n,), signed speeds.
-            pending: sweeps that are not out of the slices yet.
+            pending: sweeps that are not yet subtracted from the slices.
 
         Returns:
-            What waits for the answer, one `Solved` a step.
+            A function that waits for the answer, one `Solved` per step.
         """
         tool.engager.prepare(at, self._workpiece)
 
@@ -110,13 +112,13 @@ class StepSolver:
         return scratch
 
     def close(self) -> None:
-        """Let the threads go."""
+        """End the threads."""
         if self._pool is not None:
             self._pool.shutdown()
 
 
 def one_ahead(items: Iterator[_T]) -> Iterator[_T]:
-    """The same items, each handed on when the next has been made: work that an item began goes on meanwhile."""
+    """The same items, each passed on when the next one has been made, so that the work of both overlaps."""
     held: list[_T] = []
     for item in items:
         held.append(item)

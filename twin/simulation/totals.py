@@ -33,10 +33,13 @@ class _Sums:
 
 
 class Totals:
-    """Takes every step of a run and sums it up.
+    """Sums up the steps of a run.
 
     Args:
         descriptions: text for each tool by number.
+
+    Attributes:
+        collisions: number of collisions so far.
     """
 
     def __init__(self, descriptions: dict[int, str]) -> None:
@@ -54,15 +57,15 @@ class Totals:
         return self._tools.setdefault(number, _Sums(self._descriptions.get(number, "no tool")))
 
     def set_block(self, text: str) -> None:
-        """Tell the text of the NC block that the next steps belong to."""
+        """Set the text of the NC block to which the next steps belong."""
         self._block = text
 
     def add_time(self, t_s: float) -> None:
-        """Note how far machine time has come."""
+        """Advance machine time to ``t_s``."""
         self._time_s = max(self._time_s, t_s)
 
     def add_step(self, step: Step, sample_s: float) -> None:
-        """Count a step whose force samples stand for ``sample_s`` seconds each."""
+        """Add a step whose force samples are ``sample_s`` seconds apart."""
         tool = self._tool(step.tool)
         self._steps += 1
         self.add_time(step.t_s + step.duration_s)
@@ -109,8 +112,9 @@ class Totals:
         """The run so far.
 
         Args:
-            areas_mm2: areas of all slices, one array a family; part of the digest.
-            removed_mm3: volume taken out by each tool.
+            complete: whether the program came to its end.
+            areas_mm2: areas of all slices, one array per family; part of the digest.
+            removed_mm3: volume removed by each tool.
         """
         digest = self._digest.copy()
         for areas in areas_mm2:

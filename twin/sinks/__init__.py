@@ -1,1 +1,1 @@
-"""Where records go."""
+"""Outputs of a run: archive files, the rerun viewer and its recordings."""

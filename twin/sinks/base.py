@@ -1,4 +1,4 @@
-"""The door every sink has: records in, nothing computed."""
+"""The interface of every sink: it takes records and computes nothing."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from twin.record import Record
 
 
 class Sink(Protocol):
-    """Receives the records of one run in order: `RunHeader` first, `RunSummary` last when the run ended.
+    """Takes the records of one run in order: `RunHeader` first, `RunSummary` last if the run ended in order.
 
-    A sink is a context manager. `close` finishes what was written so far into something valid, whether or not the run
-    came to its end, and may be called twice. Leaving the context by an exception closes as well.
+    A sink is a context manager. `close` completes the output with what was written so far, whether or not the run came
+    to its end, and may be called twice. Leaving the context by an exception closes as well.
     """
 
     def write(self, record: Record) -> None:
-        """Take one record. Raises `twin.errors.ArchiveError` when it cannot be kept (disk full)."""
+        """Take one record. Raises `twin.errors.ArchiveError` if it cannot be stored (disk full)."""
 
     def close(self) -> None:
-        """Finish; valid up to the last record taken."""
+        """Complete the output; it is valid up to the last record taken."""
 
     def __enter__(self) -> Self: ...
 

@@ -1,4 +1,4 @@
-"""A run into an MCAP file (docs/archive-format.md)."""
+"""Writes a run to an MCAP file (docs/archive-format.md)."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from twin.record import Record
 
 
 class McapSink:
-    """Writes ``path``, under the name ``*.partial.mcap`` until `close`: a killed run leaves that, readable.
+    """Writes ``path``, under the name ``*.partial.mcap`` until `close`; that file is readable after a killed run.
 
-    Ctrl-C waits until the record at hand is in. When writing fails, the records that were complete stay under the
+    Ctrl-C takes effect after the current record is written. If writing fails, the complete records are kept under the
     partial name, and `close` does nothing more. A run that ends before its header leaves no file.
 
     Args:
-        path: the run's file; missing folders above it are made.
-        force: replace a file that is there instead of refusing.
+        path: the run's file; missing folders above it are created.
+        force: replace an existing file instead of refusing.
 
     Raises:
-        ArchiveError: the file is there already, or cannot be made.
+        ArchiveError: the file already exists, or cannot be created.
     """
 
     def __init__(self, path: str | PathLike[str], *, force: bool = False) -> None:
@@ -44,7 +44,7 @@ class McapSink:
             self._run.write(record)
 
     def close(self) -> None:
-        """Finish the file and give it its final name.
+        """Complete the file and give it its final name.
 
         Raises:
             ArchiveError: the end could not be written; the records are kept under the partial name.
@@ -59,7 +59,7 @@ class McapSink:
                 self._file.discard()
 
     def discard(self) -> None:
-        """End without leaving a file; what a failed write has kept under the partial name stays."""
+        """End without leaving a file, except a partial file kept after a failed write."""
         if not self._file.closed:
             self._file.discard()
 

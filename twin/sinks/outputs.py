@@ -1,4 +1,4 @@
-"""Where the records of a run go: opened together, finished together, and gone when the run fails."""
+"""Outputs of a run: opened together, completed together, and removed when the run fails."""
 
 from __future__ import annotations
 
@@ -15,17 +15,19 @@ Write: TypeAlias = Callable[[Record], None]
 
 @contextmanager
 def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool) -> Iterator[Write]:
-    """Open the outputs asked for and give what writes a record to all of them.
+    """Open the requested outputs; yields a function that writes a record to all of them.
 
-    They are finished at the end. When the block ends by an exception they are given up, and no file is left, but for
-    what an output that could not be written keeps itself under its partial name.
+    They are completed at the end. If the block ends by an exception they are discarded, and no file is left except the
+    partial file of an output that could not be written.
 
     Args:
+        mcap: archive to write.
+        rrd: rerun recording to write.
         view: show the run in the viewer.
-        force: replace files that are there.
+        force: replace files that exist.
 
     Raises:
-        ArchiveError: a file that is there already, or cannot be written, or has a wrong suffix.
+        ArchiveError: a file that already exists, cannot be written, or has a wrong suffix.
     """
     sinks: list[McapSink | RerunSink] = []
     _check_suffix(mcap, ".mcap")
@@ -54,6 +56,6 @@ def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool) -> I
 
 
 def _check_suffix(path: Path | None, suffix: str) -> None:
-    """Viewers go by it."""
+    """Viewers detect the kind of a file by its suffix."""
     if path is not None and path.suffix.lower() != suffix:
         raise ArchiveError(f"{path}: expected a file name that ends in {suffix}")

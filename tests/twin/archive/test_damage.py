@@ -107,7 +107,7 @@ def foreign(path: Path, profile: str) -> None:
 
 WRONG = {
     "empty": (b"", "is empty, expected a run's MCAP file"),
-    "text": (b"G1 X10 F200\n", "is no MCAP file, expected a run's MCAP file"),
+    "text": (b"G1 X10 F200\n", "is not an MCAP file, expected a run's MCAP file"),
     "magic": (b"\x89MCAP0\r\n", "ends within its first bytes, expected a run's MCAP file"),
     "part of the magic": (b"\x89MC", "ends within its first bytes, expected a run's MCAP file"),
 }
@@ -209,7 +209,7 @@ def test_a_full_disk_is_one_error_and_the_partial_file_stays_readable(tmp_path):
     partial = tmp_path / "full.partial.mcap"
     assert err.splitlines()[-1] == (
         f"twin.errors.ArchiveError: {path}: cannot be written: file too large; "
-        f"what was written so far is kept in {partial}"
+        f"the part written so far is kept in {partial}"
     )
     assert [p.name for p in tmp_path.iterdir()] == ["full.partial.mcap"]
     assert partial.stat().st_size <= LIMIT

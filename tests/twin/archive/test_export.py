@@ -95,7 +95,7 @@ def test_another_body_is_refused(path, tmp_path):
 
 def test_a_file_that_is_there_is_kept_without_force(path, tmp_path):
     (out := tmp_path / "f.csv").write_text("mine")
-    with pytest.raises(ArchiveError, match=r"f.csv: is there already; replace it with --force$"):
+    with pytest.raises(ArchiveError, match=r"f.csv: already exists; replace it with --force$"):
         export_forces(path, out)
     assert out.read_text() == "mine"
     assert export_forces(path, out, force=True) == 55

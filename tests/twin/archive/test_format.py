@@ -155,7 +155,7 @@ def test_a_run_written_anew_by_another_program_is_the_same(path, run_records, sa
 
 def test_another_compression_is_named(path, tmp_path):
     rewrite(path, tmp_path / "other.mcap", CompressionType.LZ4, True)
-    with pytest.raises(ArchiveError, match=r"other.mcap: packed by 'lz4', expected 'zstd' or nothing$"):
+    with pytest.raises(ArchiveError, match=r"other.mcap: compressed by 'lz4', expected 'zstd' or nothing$"):
         list(read_run(tmp_path / "other.mcap"))
 
 

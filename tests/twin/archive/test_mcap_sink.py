@@ -39,7 +39,7 @@ def test_a_file_that_is_there_is_refused(tmp_path, run_records):
     (old := tmp_path / "run.mcap").write_text("old")
     with pytest.raises(ArchiveError) as error:
         McapSink(old)
-    assert str(error.value) == f"{old}: is there already; replace it with --force"
+    assert str(error.value) == f"{old}: already exists; replace it with --force"
     assert names(tmp_path) == ["run.mcap"]
 
 
@@ -57,8 +57,7 @@ def test_what_a_killed_run_left_is_not_overwritten(tmp_path, run_records):
     with pytest.raises(ArchiveError) as error:
         McapSink(tmp_path / "run.mcap")
     assert str(error.value) == (
-        f"{left}: left by a run that did not finish, or of one that is running; "
-        "move it away, or replace it with --force"
+        f"{left}: file of a run that did not finish, or is still running; move it away, or replace it with --force"
     )
     assert left.read_text() == "past"
     with McapSink(tmp_path / "run.mcap", force=True) as sink:
@@ -74,7 +73,7 @@ def test_a_file_that_came_meanwhile_is_not_replaced(tmp_path, run_records):
         sink.close()
     kept = tmp_path / "run.partial.mcap"
     assert str(error.value) == (
-        f"{tmp_path}/run.mcap: is there already; replace it with --force; this run is kept in {kept}"
+        f"{tmp_path}/run.mcap: already exists; replace it with --force; this run is kept in {kept}"
     )
     assert (tmp_path / "run.mcap").read_text() == "other"
     assert run_info(kept).intact
@@ -129,5 +128,5 @@ def test_a_place_that_cannot_be_written_is_one_error(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(ArchiveError, match=r"file/run.mcap: cannot be written: (not a directory|file exists)$"):
         McapSink(tmp_path / "file" / "run.mcap")
-    with pytest.raises(ArchiveError, match=r"^/dev/null: is there already; replace it with --force$"):
+    with pytest.raises(ArchiveError, match=r"^/dev/null: already exists; replace it with --force$"):
         McapSink("/dev/null")

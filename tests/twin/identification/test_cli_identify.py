@@ -89,7 +89,7 @@ def test_files_that_are_there_are_not_replaced(cuts_file: Path, capsys: pytest.C
     out = cuts_file.parent / "steel.toml"
     out.write_text("mine")
     assert run(["identify", str(cuts_file), "-o", str(out)]) == 1
-    assert "is there already; replace it with --force" in capsys.readouterr().err
+    assert "already exists; replace it with --force" in capsys.readouterr().err
     assert out.read_text() == "mine"
     assert sorted(p.name for p in out.parent.iterdir()) == ["cuts.toml", "steel.toml"]
     assert run(["identify", str(cuts_file), "-o", str(out), "--force"]) == 0

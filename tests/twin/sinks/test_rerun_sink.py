@@ -214,7 +214,7 @@ def test_an_existing_file_is_refused(tmp_path: Path) -> None:
     path.write_bytes(b"mine")
     with pytest.raises(ArchiveError) as caught:
         RerunSink(rrd=path)
-    assert str(caught.value) == f"{path}: is there already; replace it with --force"
+    assert str(caught.value) == f"{path}: already exists; replace it with --force"
     assert path.read_bytes() == b"mine"
 
 
@@ -262,7 +262,7 @@ def test_a_full_disk_is_an_error_and_keeps_what_was_written(tmp_path: Path, monk
             sink.write(record)
         sink.close()
     partial = tmp_path / "a.partial.rrd"
-    kept = f"what was written so far is kept in {partial}"
+    kept = f"the part written so far is kept in {partial}"
     assert str(caught.value) == f"{path}: cannot be written: no space left on device; {kept}"
     sink.close()
     assert partial.exists()

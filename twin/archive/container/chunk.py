@@ -1,4 +1,4 @@
-"""One chunk of an MCAP file in the making: its messages, their index, its bytes."""
+"""One chunk of an MCAP file that is being written: its messages, their index, its bytes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LEVEL = 1
 
 
 def to_bytes(record: McapRecord) -> bytes:
-    """A record as it stands in a file."""
+    """The bytes of a record in a file."""
     builder = RecordBuilder()
     record.write(builder)
     return bytes(builder.end())  # type: ignore[no-untyped-call]
@@ -35,7 +35,7 @@ def to_bytes(record: McapRecord) -> bytes:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FinishedChunk:
-    """The bytes of a chunk and what the summary section says of it.
+    """The bytes of a chunk, and its entries in the summary section.
 
     Attributes:
         record: the chunk record.
@@ -117,7 +117,7 @@ class ChunkBuilder:
         self.size += len(data)
 
     def _pieces(self, forces: memoryview) -> Iterator[bytes | memoryview]:
-        """The records in order, each step's force records in their place."""
+        """The records in order, the force records of each step among them."""
         sizes = iter([len(s.samples.t_s) * RECORD.itemsize for s in self._steps])
         done = 0
         for part in self._parts:

@@ -1,4 +1,4 @@
-"""An MCAP file in the making: attachments, metadata, chunks, and the summary section at its end."""
+"""An MCAP file that is being written: attachments, metadata, chunks, and the summary section at its end."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ class Container:
     """Writes one MCAP file through a function that takes bytes and keeps all of them or raises.
 
     Attributes:
-        library: what the file's header says of its writer.
+        put: takes bytes and keeps all of them, or raises.
+        library: name of the writer in the file's header.
         profile: kind of the file: a run, or a comparison of one.
     """
 
@@ -65,11 +66,11 @@ class Container:
 
     @property
     def pending_bytes(self) -> int:
-        """Uncompressed size of what no chunk in the file holds yet."""
+        """Uncompressed size of the records that are not in a chunk of the file yet."""
         return self._builder.size if self._builder else 0
 
     def add_attachment(self, name: str, media_type: str, data: bytes) -> None:
-        """Write a whole file into the run's file."""
+        """Attach a file."""
         record = to_bytes(Attachment(create_time=0, log_time=0, name=name, media_type=media_type, data=data))
         index = AttachmentIndex(self._offset, len(record), 0, 0, len(data), name, media_type)
         self._write(record)
@@ -83,20 +84,20 @@ class Container:
         self._metadata.append(index)
 
     def add_message(self, topic: str, time_ns: int, payload: bytes) -> None:
-        """Take one message; it is in the file after `flush`."""
+        """Add one message; it is in the file after `flush`."""
         channel = self._channel(topic)
         sequence = self._sequence.get(channel, 0)
         self._sequence[channel] = sequence + 1
         self._chunk().add_message(channel, sequence & 0xFFFFFFFF, time_ns, payload)
 
     def add_forces(self, step: Step) -> None:
-        """Take the force samples of one step; they are in the file after `flush`."""
+        """Add the force samples of one step; they are in the file after `flush`."""
         if len(step.samples.t_s):
             self._channel(schemas.FORCE_TOPIC)
             self._chunk().add_forces(step)
 
     def flush(self) -> None:
-        """Complete the chunk: what was taken so far is in the file."""
+        """Complete the chunk: all that was added so far is in the file."""
         if self._builder is None:
             return
         chunk = self._builder.finish(self._counts.get(FORCE_CHANNEL, 0))

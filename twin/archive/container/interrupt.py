@@ -1,4 +1,4 @@
-"""Ctrl-C at a good moment."""
+"""Ctrl-C between records, not within one."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 @contextmanager
 def after_this() -> Iterator[None]:
-    """Ctrl-C inside the block takes effect at its end, so that what the block writes is whole.
+    """Ctrl-C inside the block takes effect at its end, so that what the block writes is complete.
 
     Outside the main thread, and where something other than Python handles the signal, nothing changes.
     """

@@ -1,4 +1,4 @@
-"""A file that has its final name only when it is whole; until then it stands beside it under a name that says so."""
+"""A file that has its final name only when it is complete; until then its name ends in ``.partial``."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
 
 
 def partial_path(path: Path) -> Path:
-    """Name of a file while it is written: ``slot.partial.mcap`` for ``slot.mcap``, so that viewers open it too."""
+    """Name of a file while it is written: ``slot.partial.mcap`` for ``slot.mcap``, which viewers open too."""
     return path.with_name(f"{path.stem}.partial{path.suffix}")
 
 
 def reason(error: OSError) -> str:
-    """What the system says, in lower case and without its number."""
+    """The system's message, in lower case and without its number."""
     text = error.strerror or str(error)
     return text[:1].lower() + text[1:]
 
@@ -57,14 +57,14 @@ def copy_file(source: Path, target: Path, *, force: bool = False) -> Path:
 
 
 class PartialFile:
-    """Writes bytes without a buffer; a piece is in the file whole or not at all.
+    """Writes bytes without a buffer; a piece is in the file completely or not at all.
 
     Args:
         path: the final name.
-        force: replace a file of that name, and what an earlier unfinished run left, instead of refusing.
+        force: replace a file of that name, and the partial file of an earlier unfinished run, instead of refusing.
 
     Raises:
-        ArchiveError: a file is there and ``force`` is not, or none can be made.
+        ArchiveError: a file exists and ``force`` is not set, or none can be created.
     """
 
     def __init__(self, path: Path, *, force: bool = False) -> None:
@@ -98,7 +98,7 @@ class PartialFile:
                 os.ftruncate(self._file, self._size)
             self.abandon()
             raise ArchiveError(
-                f"{self.path}: cannot be written: {reason(error)}; what was written so far is kept in {self.partial}"
+                f"{self.path}: cannot be written: {reason(error)}; the part written so far is kept in {self.partial}"
             ) from error
         self._size += len(data)
 
@@ -106,7 +106,7 @@ class PartialFile:
         """Give the file its final name.
 
         Raises:
-            ArchiveError: a file of that name has come meanwhile; the partial one stays.
+            ArchiveError: a file of that name was created meanwhile; the partial one is kept.
         """
         self.abandon()
         self._refuse_existing(f"; this run is kept in {self.partial}")
@@ -118,7 +118,7 @@ class PartialFile:
             ) from error
 
     def abandon(self) -> None:
-        """Close and keep what is there under its partial name."""
+        """Close; the file is kept under its partial name."""
         file, self._file = self._file, None
         if file is not None:
             os.close(file)
@@ -142,10 +142,10 @@ class PartialFile:
             return os.open(self.partial, _NEW, 0o666)
         except FileExistsError:
             raise ArchiveError(
-                f"{self.partial}: left by a run that did not finish, or of one that is running; "
+                f"{self.partial}: file of a run that did not finish, or is still running; "
                 "move it away, or replace it with --force"
             ) from None
 
     def _refuse_existing(self, kept: str = "") -> None:
         if not self._force and self.path.exists():
-            raise ArchiveError(f"{self.path}: is there already; replace it with --force{kept}")
+            raise ArchiveError(f"{self.path}: already exists; replace it with --force{kept}")

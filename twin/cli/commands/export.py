@@ -15,9 +15,9 @@ def export(
     out: Annotated[Path, typer.Argument(metavar="OUT.csv|.parquet", help="Table to write.", show_default=False)],
     on: Annotated[
         ForceOn | None,
-        typer.Option(help="Body that feels the forces; the job's output.force_on if not given.", show_default=False),
+        typer.Option(help="Body on which the forces act; the job's output.force_on if not given.", show_default=False),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
 ) -> None:
     """Write every force sample of a run as CSV or Parquet.
 

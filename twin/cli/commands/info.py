@@ -20,7 +20,7 @@ def info(
     run: Annotated[Path, typer.Argument(metavar="RUN.mcap", help="Archive of a run.", show_default=False)],
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Tell what an archive holds: program, stock, tools, messages, attached files, and the run's summary."""
+    """Print the contents of an archive: summary of the run, program, stock, tools, messages, attached files."""
     from twin.archive import run_info
 
     found = run_info(run)
@@ -43,7 +43,7 @@ def info(
 
 
 def _file_table(info: RunInfo) -> Table:
-    """The file itself, a line for each thing in it."""
+    """The file itself, one line per item."""
     from rich.table import Table
     from rich.text import Text
 
@@ -58,7 +58,7 @@ def _file_lines(info: RunInfo) -> list[tuple[str, str]]:
     from twin.cli.show.words import clock, grouped, size
 
     header = info.header
-    state = "whole" if info.intact else "cut off: what was complete is readable"
+    state = "complete" if info.intact else "incomplete: readable up to its last complete record"
     low, high = header.stock_bounds_mm.tolist()
     box = ", ".join(f"{axis} {a:g} to {b:g}" for axis, a, b in zip("XYZ", low, high, strict=True))
     pitch = " x ".join(f"{p:g}" for p in header.slice_pitch_mm)
@@ -67,7 +67,7 @@ def _file_lines(info: RunInfo) -> list[tuple[str, str]]:
         ("size", f"{size(info.path.stat().st_size)}, {state}"),
         ("program", header.program),
         ("covers", f"{clock(info.duration_s)} of {clock(header.planned_time_s)}"),
-        ("stock, mm", f"{box}; slices {pitch} apart"),
+        ("stock, mm", f"{box}; slice pitch {pitch}"),
         ("tools", "; ".join(f"T{t.number} {t.description}" for t in header.tools)),
         *((f"messages {topic}", grouped(n)) for topic, n in _topics(info.counts).items()),
         *((f"attached {name}", size(n)) for name, n in info.attachments.items()),

@@ -20,11 +20,11 @@ def mesh(
         Path, typer.Argument(metavar="RUN.mcap|JOB", help="Archive of a run, or a job to replay.", show_default=False)
     ],
     out: Annotated[Path, typer.Argument(metavar="OUT.stl|.3mf", help="Mesh to write, in mm.", show_default=False)],
-    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
 ) -> None:
     """Write the machined part as a triangle mesh.
 
-    From an archive it is the part as drawn in it; from a job it is meshed from the slices after a replay.
+    From an archive it is the surface recorded last; from a job it is computed from the slices after a replay.
     """
     from twin.cli.console import results
     from twin.workpiece.mesh_file import check_mesh_path, write_mesh

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Engine(StrEnum):
-    """Implementations of the slices."""
+    """Geometry engines."""
 
     FAST = "fast"
     REFERENCE = "reference"
@@ -26,33 +26,37 @@ def replay(
     view: Annotated[bool, typer.Option("--view", help="Show the run in rerun while it is computed.")] = False,
     rrd: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write a rerun recording here, not to output.rrd.", show_default=False),
+        typer.Option(
+            metavar="FILE", help="Rerun recording to write; the job's output.rrd if not given.", show_default=False
+        ),
     ] = None,
     mcap: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write the archive here, not to output.mcap.", show_default=False),
+        typer.Option(
+            metavar="FILE", help="Archive (MCAP) to write; the job's output.mcap if not given.", show_default=False
+        ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace output files that are there.")] = False,
-    strict: Annotated[bool, typer.Option("--strict", help="End at the first collision, with exit code 3.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace output files that exist.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Stop at the first collision, with exit code 3.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as one JSON object.")] = False,
     quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="No progress and no summary; warnings and errors are still said.")
+        bool, typer.Option("--quiet", "-q", help="Print no progress and no summary, only warnings and errors.")
     ] = False,
     no_forces: Annotated[
-        bool, typer.Option("--no-forces", help="Leave the forces out, whatever coefficients the job has.")
+        bool, typer.Option("--no-forces", help="Compute no forces, even if the job has cutting coefficients.")
     ] = False,
     engine: Annotated[
         Engine | None,
-        typer.Option(help="Slices: fast, or the plain reference; the job's if not given.", show_default=False),
+        typer.Option(help="Geometry engine: fast, or the slow reference; the job's if not given.", show_default=False),
     ] = None,
     threads: Annotated[
-        int | None, typer.Option(min=1, max=64, help="Threads; all cores if not given.", show_default=False)
+        int | None, typer.Option(min=1, max=64, help="Number of threads; all cores if not given.", show_default=False)
     ] = None,
 ) -> None:
-    """Replay the NC program of a job: remove material, compute forces, keep the run.
+    """Replay the NC program of a job: remove material, compute cutting forces, archive the run.
 
-    Folders of outputs are made where they are missing. Ctrl-C ends the run with all that was replayed in its outputs;
-    a second one gives them up. A replay that ends by an error leaves no outputs.
+    Missing folders of outputs are created. Ctrl-C stops the replay; its outputs are complete up to there. A second
+    Ctrl-C discards them. A replay that ends with an error leaves no outputs.
     """
     from twin.cli.commands.replaying import replay_job
     from twin.cli.show.progress import progress
@@ -99,12 +103,12 @@ def _print_warnings(outcome: Outcome) -> None:
     from twin.cli.console import fail, warn
 
     if outcome.refused is not None:
-        fail(f"ended at a collision (--strict): {outcome.refused.message}")
+        fail(f"stopped at a collision (--strict): {outcome.refused.message}")
         return
     for message in outcome.watch.warnings(outcome.summary):
         warn(message)
     if outcome.signal_number is not None:
-        warn(f"stopped at {outcome.summary.machine_time_s:.1f} s of machine time; outputs hold the run up to there")
+        warn(f"stopped at {outcome.summary.machine_time_s:.1f} s of machine time; outputs have the run up to there")
 
 
 def _exit_code(outcome: Outcome) -> int:

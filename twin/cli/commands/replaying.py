@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 
 class OpenReplay(Replaying, Protocol):
-    """What is used of `twin.simulation.replay.Replay`."""
+    """The interface of `twin.simulation.replay.Replay` that is used here."""
 
     def mesh(self) -> SurfaceMesh:
-        """The part as is."""
+        """The surface of the workpiece."""
 
     def close(self) -> None:
         """End worker threads."""
@@ -78,7 +78,7 @@ def replay_job(
         at_end: called with the replay before it is closed.
 
     Raises:
-        TwinError, GcodeError: what cannot be replayed or written.
+        TwinError, GcodeError: the program cannot be replayed, or an output cannot be written.
     """
     begin = time.perf_counter()
     with closing(open_replay(job, threads)) as replay, StopRequest() as stop:

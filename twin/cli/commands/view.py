@@ -14,9 +14,9 @@ def view(
         Path | None,
         typer.Option(metavar="FILE", help="Write a rerun recording instead of opening the viewer.", show_default=False),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace a recording that is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace a recording that exists.")] = False,
 ) -> None:
-    """Show an archived run in rerun, as it looked while it was computed; or an archived comparison."""
+    """Show an archived run, or an archived comparison, in the rerun viewer."""
     from twin.archive.comparison_file import is_comparison
 
     if is_comparison(run):
@@ -50,7 +50,7 @@ def _comparison(path: Path, rrd: Path | None, *, force: bool) -> None:
     from twin.sinks.rerun.compare import show_comparison
 
     if rrd is not None and rrd.exists() and not force:
-        raise ArchiveError(f"{rrd}: is there already; replace it with --force")
+        raise ArchiveError(f"{rrd}: already exists; replace it with --force")
     forces, _ = read_comparison(path)
     show_comparison(forces, rrd=rrd, spawn=rrd is None)
     if rrd is not None:

@@ -1,4 +1,4 @@
-"""How far a run has come, on a terminal."""
+"""Progress of a run or a computation, on the terminal."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from twin.cli.console import errors
 from twin.cli.show.words import clock
 from twin.record import NcEvent, Record, RunHeader, Step
 
-#: The line is drawn anew at most this often, s.
+#: Least time between two updates of the line, s.
 _EVERY_S = 0.1
 
 
@@ -21,7 +21,7 @@ class Progress(Protocol):
     """Shows how far a run has come."""
 
     def start(self, total_s: float) -> None:
-        """The run begins; its machine time is known."""
+        """The run begins; its whole machine time is known."""
 
     def at(self, t_s: float, nc_line: int) -> None:
         """The run is at this machine time and NC line."""
@@ -62,7 +62,7 @@ class NoProgress:
 
 
 class LineProgress:
-    """One line with bar, percent, machine time, real-time factor, time left and NC line; gone at the end.
+    """One line with bar, percent, machine time, real-time factor, time left and NC line; removed at the end.
 
     Args:
         now: seconds of a clock that only goes forward.

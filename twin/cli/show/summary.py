@@ -1,4 +1,4 @@
-"""The summary of a run as tables for a machinist."""
+"""The summary of a run as tables."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ _Four = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Timing:
-    """How long the computer took."""
+    """Computing times."""
 
     setup_s: float
     wall_s: float
 
 
 def mean_force(on_tool_n: _Four, force_on: str) -> _Four:
-    """Mean force on the body asked for: the workpiece feels the opposite of the tool."""
+    """Mean force on the requested body; on the workpiece it has the opposite sign."""
     if force_on == "tool":
         return on_tool_n
     x, y, z, resultant = on_tool_n
@@ -59,7 +59,7 @@ def print_summary(
         header: names the program.
         groups: its collisions.
         force_on: ``"tool"`` or ``"workpiece"``.
-        timing: None for a run that was not replayed just now.
+        timing: None for a run that is not being replayed.
     """
     console.print(_title(summary, header))
     console.print(_totals(summary, timing))
@@ -78,8 +78,8 @@ def table(*heads: str, numbers: str = "") -> Table:
     """A table without a frame.
 
     Args:
-        heads: of its columns.
-        numbers: one letter a column, ``>`` for numbers: they stand to the right and are never broken.
+        heads: headings of the columns.
+        numbers: one letter per column, ``>`` for numbers: they are right-aligned and never wrapped.
     """
     made = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
     for head, side in zip(heads, numbers.ljust(len(heads)), strict=True):
@@ -102,7 +102,7 @@ def _title(summary: RunSummary, header: RunHeader | None) -> Text:
 
 
 def _totals(summary: RunSummary, timing: Timing | None) -> Table:
-    """The run in a few numbers, two columns of them."""
+    """The main numbers of the run, in two columns."""
     peak, mean = summary.peak_force_n[3], summary.mean_force_n[3]
     computed = summary.samples > 0
     idle_s = max(0.0, summary.machine_time_s - summary.cutting_time_s)
@@ -144,7 +144,7 @@ def _rate_cm3_min(tool: ToolSummary) -> float:
 
 
 def _forces(summary: RunSummary, force_on: str) -> Table:
-    """Two rows a tool: peaks, and means over its cutting time."""
+    """Two rows per tool: peaks, and means over its cutting time."""
     made = table("tool", "", "Fx", "Fy", "Fz", "resultant", "torque, N·m", "power, W", "at line", numbers="  >>>>>>>")
     tools = [tool for tool in summary.tools if tool.cutting_time_s > 0.0]
     forces = column(f for tool in tools for f in (*tool.peak_force_n, *mean_force(tool.mean_force_n, force_on)))
@@ -166,12 +166,12 @@ def _top_lines(summary: RunSummary) -> Table:
 
 
 def _collisions(groups: Sequence[CollisionGroup]) -> Table:
-    made = table("line", "tool", "what", "times", "mm³", "first at", "X", "Y", "Z", numbers=">> >>>>>>")
+    made = table("line", "tool", "collision", "count", "mm³", "first at", "X", "Y", "Z", numbers=">> >>>>>>")
     shown = groups[:_MOST_GROUPS]
     volumes = column(g.volume_mm3 for g in shown)
     for g, volume_of in zip(shown, volumes, strict=True):
-        place = (f"{x:.3f}" for x in g.point_mm)
-        made.add_row(str(g.nc_line), f"T{g.tool}", _KINDS[g.kind], str(g.count), volume_of, clock(g.t_s), *place)
+        position = (f"{x:.3f}" for x in g.point_mm)
+        made.add_row(str(g.nc_line), f"T{g.tool}", _KINDS[g.kind], str(g.count), volume_of, clock(g.t_s), *position)
     if len(groups) > _MOST_GROUPS:
-        made.add_row("", "", f"and on {plural(len(groups) - _MOST_GROUPS, 'more line')}")
+        made.add_row("", "", f"and on {plural(len(groups) - _MOST_GROUPS, 'further line')}")
     return made

@@ -1,4 +1,4 @@
-"""What a summary says beyond the run's sums: collisions, words without effect, where the tools went."""
+"""Collisions and warnings of a run: by NC line, words without effect, a path that misses the stock."""
 
 from __future__ import annotations
 
@@ -15,10 +15,15 @@ _MOST_NOTICES = 5
 
 @dataclass(slots=True, kw_only=True)
 class CollisionGroup:
-    """Collisions of one kind of one tool on one NC line, or what one motion made of many.
+    """Collisions of one kind, of one tool, on one NC line.
 
     Attributes:
-        point_mm, t_s: tool tip and time of the first.
+        nc_line: line of the NC program.
+        tool: tool number.
+        kind: see `twin.record.Collision`.
+        point_mm, t_s: tool tip and machine time of the first.
+        count: number of them.
+        volume_mm3: material swept by the colliding body, in all of them.
     """
 
     nc_line: int
@@ -47,12 +52,12 @@ class _Extent:
 
 
 class Watch:
-    """Takes the records of a run as they pass; its memory does not grow with the run.
+    """Collects collisions and warnings from the records of a run; its memory does not grow with the run.
 
     Attributes:
-        header: the run's header, None before it came.
-        collisions: the first `MOST_COLLISIONS` of them.
-        groups: all of them, grouped, in the order of their first.
+        header: the run's header, None before it was taken.
+        collisions: the first `MOST_COLLISIONS` collisions.
+        groups: all collisions by NC line, tool and kind, in order.
         t_s: machine time so far.
     """
 
@@ -84,7 +89,7 @@ class Watch:
             self.header = record
 
     def warnings(self, summary: RunSummary) -> list[str]:
-        """What the user should know, one line each."""
+        """Warnings for the user, one line each."""
         return [*self._collided(summary), *self._missed(summary), *self._without_effect()]
 
     def _step(self, step: Step) -> None:
@@ -115,14 +120,14 @@ class Watch:
             yield f"{plural(summary.collisions, 'collision')}, the first: {self.collisions[0].message}"
 
     def _missed(self, summary: RunSummary) -> Iterator[str]:
-        """The commonest slip of a set-up: stock and path in different places."""
+        """The most common error of a setup: stock and path at different positions."""
         if summary.complete and summary.removed_volume_mm3 <= 0.0 and self.header is not None:
             stock = _Extent()
             for corner in self.header.stock_bounds_mm.tolist():
                 stock.add(tuple(corner))
-            path = f"the feed motions pass {self._feeds}" if self._fed else "there is no feed motion"
+            path = f"the feed motions are at {self._feeds}" if self._fed else "there is no feed motion"
             yield (
-                f"nothing was cut: {path}, the stock is at {stock}; "
+                f"no material was cut: {path}, the stock is at {stock}; "
                 "check stock, machine.offsets and the tools' length_mm in the job"
             )
 
@@ -131,4 +136,4 @@ class Watch:
             yield f"line {line}: {text}" + (f" (and {count - 1} more like it)" if count > 1 else "")
         if len(self._notices) > _MOST_NOTICES:
             more = plural(len(self._notices) - _MOST_NOTICES, "more kind")
-            yield f"{more} of words without effect, see the archive"
+            yield f"{more} of words without effect; see the archive"

@@ -10,7 +10,7 @@ __all__ = ["clock", "column", "digits", "grouped", "plural", "size", "volume"]
 
 
 def digits(value: float) -> str:
-    """About three digits that count, never an exponent: ``0.144``, ``66.5``, ``1 470``."""
+    """About three significant digits, never an exponent: ``0.144``, ``66.5``, ``1 470``."""
     size = abs(value)
     for limit, decimals in ((0.9995, 3), (9.995, 2), (999.95, 1)):
         if size < limit:
@@ -19,7 +19,7 @@ def digits(value: float) -> str:
 
 
 def column(values: Iterable[float]) -> list[str]:
-    """Numbers that stand below each other, with as many decimals as the largest of them needs."""
+    """Numbers of one column, all with the decimals that the largest of them needs."""
     numbers = list(values)
     largest = max(map(abs, numbers), default=0.0)
     decimals = next((d for limit, d in ((1.0, 3), (10.0, 2), (1000.0, 1)) if largest < limit), 0)

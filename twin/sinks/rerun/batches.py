@@ -1,4 +1,4 @@
-"""Steps gathered into columns: the whole of a batch goes to the viewer in a few calls."""
+"""Steps gathered into columns, so that a batch is sent to the viewer in a few calls."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from twin.record import Step
 from twin.sinks.rerun import layout
 from twin.sinks.rerun.shapes import force_class
 
-#: A batch is complete at so many steps or samples.
+#: A batch is complete at this many steps or samples.
 BATCH_STEPS = 256
 BATCH_SAMPLES = 1 << 16
-#: A long motion that is one step moves the drawn tool this often, but not more often than so many times.
+#: Time between positions of the drawn tool in a long step, and the largest number of them.
 _POSE_S = 0.04
 _POSES = 250
-#: Rows of the path in a run: a finer one makes the viewer slow, a coarser one lets the path lag behind the tool.
+#: Rows of the path in a run: with more the viewer is slow, with fewer the path lags behind the tool.
 _PATH_ROWS = 1500
 _REVOLUTION = 2.0 * np.pi
 
 
 @dataclass(frozen=True, slots=True)
 class Moments:
-    """When rows hold, on every timeline: seconds, step indices, NC lines, each of shape (n,)."""
+    """Times of rows on every timeline: seconds, step indices, NC lines, each of shape (n,)."""
 
     t_s: FloatArray
     step: NDArray[np.int64]
@@ -42,7 +42,7 @@ class Moments:
         return cls(np.array(t_s), np.array(step, np.int64), np.array(line, np.int64))
 
     def columns(self) -> list[rr.TimeColumn]:
-        """As the viewer wants them; time is rounded to whole nanoseconds."""
+        """Columns for the viewer; time is rounded to whole nanoseconds."""
         return [
             rr.TimeColumn(layout.TIME, duration=np.rint(self.t_s * 1e9).astype("timedelta64[ns]")),
             rr.TimeColumn(layout.STEP, sequence=self.step),
@@ -58,19 +58,19 @@ class StepBatch:
     samples: int = 0
 
     def add(self, step: Step) -> bool:
-        """Take a step; True when it is time to send."""
+        """Add a step; True when the batch is complete."""
         self.steps.append(step)
         self.samples += len(step.samples.t_s)
         return len(self.steps) >= BATCH_STEPS or self.samples >= BATCH_SAMPLES
 
     def take(self) -> list[Step]:
-        """The steps, and begin anew."""
+        """The steps of the batch; a new one begins."""
         steps, self.steps, self.samples = self.steps, [], 0
         return steps
 
 
 def force_columns(steps: Sequence[Step]) -> tuple[Moments, dict[str, FloatArray]]:
-    """Every sample of some steps: when, and the values of each curve by its entity."""
+    """All samples of some steps: their times, and the values of each curve by its entity."""
     samples = [s.samples for s in steps]
     counts = [len(s.t_s) for s in samples]
     force = np.concatenate([s.force_n for s in samples])
@@ -84,7 +84,7 @@ def force_columns(steps: Sequence[Step]) -> tuple[Moments, dict[str, FloatArray]
 
 
 def pose_columns(steps: Sequence[Step]) -> tuple[Moments, FloatArray]:
-    """Where the tip stands, at the start of every step and within long ones: when, and shape (n, 3)."""
+    """Tool tip at the start of every step and within long ones: times, and positions of shape (n, 3)."""
     rows: list[tuple[float, int, int]] = []
     tips: list[FloatArray] = []
     for step in steps:
@@ -103,7 +103,7 @@ class RevolutionPeak:
         self._recent: deque[tuple[float, float]] = deque()
 
     def of(self, step: Step) -> float:
-        """Peak in N over a step and what of the revolution was before it."""
+        """Peak in N over a step and the revolution before its end."""
         samples = step.samples
         if not len(samples.t_s) or not step.engagement.cutting:
             self._recent.clear()
@@ -142,7 +142,7 @@ class PathBatch:
         self.highest_n = 0.0
 
     def add(self, step: Step) -> None:
-        """Take a step; it shows from its end on."""
+        """Add a step; it is shown from its end on."""
         force = self._peak.of(step)
         self.highest_n = max(self.highest_n, force)
         end_s = step.t_s + step.duration_s
@@ -180,7 +180,7 @@ class PathBatch:
 
 
 def path_columns(rows: Sequence[PathRow]) -> tuple[Moments, Any]:
-    """Rows of the path as columns: when, and strips with their classes."""
+    """Rows of the path as columns: times, and strips with their classes."""
     strips = [np.array(strip, np.float32) for row in rows for strip in row.strips]
     classes = np.array([c for row in rows for c in row.classes], np.uint16)
     columns = rr.LineStrips3D.columns(strips=strips, class_ids=classes)

@@ -1,7 +1,7 @@
-"""How the timeline is laid out: the part above, its NC blocks beside, the forces below.
+"""Layout of the timeline: the part at the top, the NC blocks on its right, the forces below.
 
-The same blueprint serves a recording of `twin.sinks.rerun.sink.RerunSink` and an archive that rerun itself reads:
-its force curves come from ``force/x|y|z`` in the one and from the fields of the messages on ``/force`` in the other.
+The same blueprint is used for a recording of `twin.sinks.rerun.sink.RerunSink` and for an archive that rerun itself
+reads: force curves come from ``force/x|y|z`` in the former and from fields of the messages on ``/force`` in the latter.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 from twin.sinks.rerun import layout
 
-#: Half of what the close view of the forces shows around the cursor.
+#: Half of the time that the close view of the forces shows around the cursor, s.
 _CLOSE_S = 0.04
 
 #: The blueprint for archives that comes with the program; made by ``python -m twin.sinks.rerun.blueprint``.
@@ -34,7 +34,7 @@ def blueprint(stock_bounds_mm: FloatArray | None = None, *, timeline: str = layo
     """The layout of the timeline.
 
     Args:
-        stock_bounds_mm: shape (2, 3), what the camera looks at; None leaves the camera to the viewer.
+        stock_bounds_mm: shape (2, 3), the box that the camera looks at; None leaves the camera to the viewer.
         timeline: machine time: `layout.TIME` in a recording, `layout.ARCHIVE_TIME` in an archive.
     """
     return rrb.Blueprint(
@@ -94,7 +94,7 @@ def _grid(stock_bounds_mm: FloatArray | None) -> rrb.LineGrid3D:
 
 
 def _eye(stock_bounds_mm: FloatArray) -> rrb.EyeControls3D:
-    """From the front, the left and above, as one stands before a machine."""
+    """From the front, left and above, as one looks into a machine."""
     low, high = stock_bounds_mm
     reach = 0.5 * float(((high - low) ** 2).sum()) ** 0.5
     target = 0.5 * (low + high) + np.array((0.0, 0.0, 0.1 * reach))
@@ -102,7 +102,7 @@ def _eye(stock_bounds_mm: FloatArray) -> rrb.EyeControls3D:
 
 
 def _blocks(timeline: str) -> rrb.TextLogView:
-    """NC blocks and collisions; lines of an archive have no colours, so their level stands beside."""
+    """NC blocks and collisions; lines of an archive have no colours, so their level is shown as well."""
     body, level = TextLogColumnKind.Body, TextLogColumnKind.LogLevel
     columns = [body] if timeline == layout.TIME else [level, body]
     return rrb.TextLogView(

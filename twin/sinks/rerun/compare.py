@@ -16,16 +16,17 @@ from twin.sinks.rerun.file import RecordingFile
 _APPLICATION_ID = "twin-comparison"
 _PORT = 9876
 _MEASURED: layout.Rgb = (206, 212, 220)
-#: Half of what the close views show around the cursor.
+#: Half of the time that the close views show around the cursor, s.
 _CLOSE_S = 0.02
 _CLOSE_NAME = "Around the cursor, ±20 ms"
 
 
 def show_comparison(forces: ComparedForces, *, rrd: Path | None = None, spawn: bool = False) -> None:
-    """Draw measured, simulated and error of each axis over machine time; a view an axis.
+    """Draw measured force, simulated force and error of each axis over machine time; one view per axis.
 
     Args:
-        rrd: recording to write; one that is there is replaced.
+        forces: both forces at the log's samples.
+        rrd: recording to write; an existing one is replaced.
         spawn: start a viewer.
 
     Raises:
@@ -71,7 +72,7 @@ def _send(recording: rr.RecordingStream, forces: ComparedForces) -> None:
 
 
 def _blueprint() -> rrb.Blueprint:
-    """For each axis the whole record on the left and the close view around the cursor on the right; errors below."""
+    """For each axis the whole log on the left and the close view around the cursor on the right; errors below."""
     pairs = {f"F{a}, measured and simulated": [f"measured/{a}", f"simulated/{a}"] for a in "xyz"}
     pairs["Error: simulated less measured"] = [f"error/{a}" for a in "xyz"]
     return rrb.Blueprint(
@@ -89,7 +90,7 @@ def _blueprint() -> rrb.Blueprint:
 
 
 def _curves(name: str, contents: list[str], *, close: bool = False) -> rrb.TimeSeriesView:
-    """Curves over the whole record, or around the cursor."""
+    """Curves over the whole log, or around the cursor."""
     around = rr.VisibleTimeRange(
         layout.TIME,
         start=rr.TimeRangeBoundary.cursor_relative(seconds=-_CLOSE_S),
@@ -107,7 +108,7 @@ def _curves(name: str, contents: list[str], *, close: bool = False) -> rrb.TimeS
 
 
 def _viewer(recording: rr.RecordingStream) -> rr.GrpcSink:
-    """Start a viewer, or find the one that runs."""
+    """Start a viewer, or use a running one."""
     try:
         rr.spawn(port=_PORT, connect=False, hide_welcome_screen=True, recording=recording)
     except RuntimeError as error:

@@ -1,7 +1,7 @@
-"""A recording on its way to its file.
+"""Writes a rerun recording to its file.
 
 The viewer's library waits for ever when the disk is full. So its bytes come here first, through a pipe, and are written
-by `PartialFile`: what goes wrong is an error of this program, and memory stays flat.
+by `PartialFile`: a full disk is an error of this program, and memory stays constant.
 """
 
 from __future__ import annotations
@@ -18,55 +18,55 @@ from twin.archive.container.partial import PartialFile
 from twin.errors import ArchiveError
 
 _PIECE = 1 << 20
-#: Open files by number: where this folder is not (Windows), a recording waits in memory for its end.
+#: Open files by number: without this folder (Windows), a recording is kept in memory until its end.
 _OPEN_FILES = Path("/dev/fd")
 
 
-class _Way(Protocol):
-    """How the bytes come from the library to the file."""
+class _Transfer(Protocol):
+    """Transfers the bytes of a recording from the library to the file."""
 
     def sink(self, recording: rr.RecordingStream) -> rr.FileSink | rr.BinaryStream:
-        """Where the recording shall write."""
+        """The library's output."""
 
     def opened(self) -> None:
-        """The recording holds the sink now."""
+        """Called when the recording has opened the output."""
 
     def finish(self) -> None:
-        """The recording has been flushed and disconnected: take the rest."""
+        """Take the rest; called when the recording was flushed and disconnected."""
 
 
 class RecordingFile:
-    """A ``.rrd`` file that has its final name only when it is whole.
+    """A ``.rrd`` file that has its final name only when it is complete.
 
     Args:
-        path: the final name; missing folders above it are made.
-        force: replace a file that is there instead of refusing.
+        path: the final name; missing folders above it are created.
+        force: replace an existing file instead of refusing.
 
     Raises:
-        ArchiveError: the file is there already, or cannot be made.
+        ArchiveError: the file already exists, or cannot be created.
     """
 
     def __init__(self, path: Path, *, force: bool = False) -> None:
         self._file = PartialFile(path, force=force)
         self._error: ArchiveError | None = None
-        self._way: _Way = _Pipe(self._put) if _OPEN_FILES.exists() else _Memory(self._put)
+        self._transfer: _Transfer = _Pipe(self._put) if _OPEN_FILES.exists() else _Memory(self._put)
         self._connected = False
-        self._told = False
+        self._reported = False
 
     def connect(self, recording: rr.RecordingStream, *viewers: rr.GrpcSink) -> None:
-        """Let a recording write here, and to viewers beside; at most once."""
-        recording.set_sinks(self._way.sink(recording), *viewers)
-        self._way.opened()
+        """Connect a recording to this file, and to viewers as well; at most once."""
+        recording.set_sinks(self._transfer.sink(recording), *viewers)
+        self._transfer.opened()
         self._connected = True
 
     def check(self) -> None:
-        """Raise what has gone wrong in the background, once.
+        """Raise an error that occurred in the background, once.
 
         Raises:
             ArchiveError: something could not be written; the file keeps its partial name.
         """
-        if self._error is not None and not self._told:
-            self._told = True
+        if self._error is not None and not self._reported:
+            self._reported = True
             raise self._error
 
     def close(self) -> None:
@@ -78,20 +78,20 @@ class RecordingFile:
         if not self._connected:
             self._file.discard()
             return
-        self._way.finish()
+        self._transfer.finish()
         self.check()
         if self._error is None:
             self._file.commit()
 
     def discard(self) -> None:
-        """End a disconnected recording without leaving a file; what a failed write has kept stays."""
+        """End a disconnected recording without leaving a file, except a partial file kept after a failed write."""
         if self._connected:
-            self._way.finish()
+            self._transfer.finish()
         if self._error is None:
             self._file.discard()
 
     def _put(self, data: bytes) -> None:
-        """Write, and after an error only swallow."""
+        """Write; after an error, discard."""
         if self._error is None:
             try:
                 self._file.write(data)
@@ -100,7 +100,7 @@ class RecordingFile:
 
 
 class _Pipe:
-    """The library writes into a pipe, a thread empties it."""
+    """The library writes to a pipe, a thread empties it."""
 
     def __init__(self, put: Callable[[bytes], None]) -> None:
         self._put = put

@@ -1,4 +1,4 @@
-"""Names, colours and widths of the timeline: the one table that recording and blueprint share."""
+"""Names, colours and widths of the timeline, shared by recording and blueprint."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Series:
     archive_field: str
 
 
-#: Red, green and blue as the axes of the 3D view, in hues that colour-blind people tell apart.
+#: Red, green and blue as the axes of the 3D view, in hues that colour-blind people can distinguish.
 FORCES = (
     Series("force/x", "Fx [N]", (240, 96, 56), "fx_n"),
     Series("force/y", "Fy [N]", (38, 186, 138), "fy_n"),
@@ -54,7 +54,7 @@ FORCES = (
 TORQUE = Series("torque", "torque [N·m]", (236, 200, 84), "torque_nm")
 SERIES = (*FORCES, TORQUE)
 
-#: Topics of the archive that carry the same things (docs/archive-format.md).
+#: Topics of the archive that have the same data (docs/archive-format.md).
 ARCHIVE_FORCE = "force"
 ARCHIVE_FORCE_COMPONENT = "twin.CuttingForce:message"
 
@@ -69,7 +69,7 @@ TEXT_COLOR: Rgb = (220, 224, 230)
 AIR_COLOR: Rgb = (176, 176, 182)
 COLLISION_COLOR: Rgb = (255, 92, 112)
 
-#: Colour of a line of the log, by kind of event; the level is what the viewer filters by.
+#: Level and colour of a line of the log by kind of event; the viewer filters by level.
 EVENT_STYLE: dict[str, tuple[str, Rgb]] = {
     "block": ("INFO", (214, 218, 224)),
     "tool": ("INFO", (236, 200, 84)),

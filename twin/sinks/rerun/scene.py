@@ -1,4 +1,4 @@
-"""What stands in the scene at all times: axes, stock, styles of curves and path, the scale of forces."""
+"""Static parts of the scene: axes, stock, styles of curves and path, the scale of forces."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from twin.sinks.rerun.shapes import box_edges, class_colors, class_force_n, forc
 
 #: Parts of the scale.
 _BARS = 28
-#: Rounding that a number at the end of the scale survives.
+#: Allowance for rounding of the number at the end of the scale.
 _ABOVE = 1.0 + 1e-9
 _UP = np.array((0.0, 0.0, 1.0))
 
 
 def draw_scene(recording: rr.RecordingStream, header: RunHeader) -> None:
-    """Log what does not change in a run."""
+    """Log all that does not change during a run."""
     log = recording.log
     log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True, strict=True)
     edges = rr.LineStrips3D(
@@ -38,15 +38,15 @@ def draw_scene(recording: rr.RecordingStream, header: RunHeader) -> None:
 
 
 def draw_scale(recording: rr.RecordingStream, stock_bounds_mm: FloatArray, end_n: float) -> None:
-    """Log the colours of the classes of force on a scale from 0 to ``end_n``; the path so far changes with it.
+    """Log the colours of the force classes on a scale from 0 to ``end_n``; the path so far changes with it.
 
-    Path strips carry the class of their force; a colour for each class is all that a new scale needs. Beside the stock
-    stands a bar of the same colours with its numbers.
+    Path strips have the class of their force, so a new scale needs only a new colour for each class. A bar of the same
+    colours with its numbers is drawn next to the stock.
     """
     colors = class_colors(end_n)
     classes = [(number, f"{class_force_n(number):.3g} N", color) for number, color in enumerate(colors)]
     recording.log(layout.PATH, rr.AnnotationContext(classes), static=True, strict=True)
-    foot, beside, height = _bar(stock_bounds_mm)
+    foot, numbers_foot, height = _bar(stock_bounds_mm)
     at = np.linspace(0.0, height, _BARS + 1)
     strips = [np.stack([foot + a * _UP, foot + b * _UP]) for a, b in pairwise(at)]
     forces = (np.arange(_BARS) + 0.5) / _BARS * end_n
@@ -57,7 +57,7 @@ def draw_scale(recording: rr.RecordingStream, stock_bounds_mm: FloatArray, end_n
     values = np.arange(round(end_n / step_n) + 1) * step_n
     values = values[values <= end_n * _ABOVE]
     numbers = rr.Points3D(
-        beside + (values / end_n * height)[:, None] * _UP,
+        numbers_foot + (values / end_n * height)[:, None] * _UP,
         labels=[f"{v:.3g} N" for v in values],
         colors=layout.TEXT_COLOR,
         radii=rr.Radius.ui_points(0.0),

@@ -1,4 +1,4 @@
-"""Shapes that only a viewer needs: the tool as a mesh, the stock as a wire box, the colours of forces."""
+"""Shapes for the viewer: the tool as a mesh, the stock as a wire box, the colours of forces."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SIDES = 48
 #: Profile corners flatter than this are shaded as one smooth surface.
 _SMOOTH_COS = math.cos(math.radians(35.0))
 
-#: Force of class 1 and the ratio from class to class: 0.1 N to 100 kN in steps that the eye does not see.
+#: Force of class 1 and the ratio from class to class: 0.1 N to 100 kN in steps too small to see.
 _FORCE_1_N = 0.1
 _RATIO = 1.05
 CLASSES = 1 + math.ceil(math.log(1e5 / _FORCE_1_N) / math.log(_RATIO))
@@ -75,7 +75,7 @@ def class_force_n(number: int) -> float:
 
 
 def scale_end_n(force_n: float) -> float:
-    """The round number at or above a force at which a scale of colours ends."""
+    """The round number at or above a force, for the end of the colour scale."""
     if force_n <= 0.0:
         return 1.0
     decade = 10.0 ** math.floor(math.log10(force_n))

@@ -1,4 +1,4 @@
-"""A run into the rerun viewer: part, tool and path in 3D, forces below, NC blocks beside (docs/rerun.md)."""
+"""A run in the rerun viewer: part, tool and path in 3D, forces below, NC blocks on the right (docs/rerun.md)."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ class RerunSink:
     """Writes a ``.rrd`` file, shows the run live, or both.
 
     Args:
-        rrd: the recording's file; missing folders above it are made. It is named ``*.partial.rrd`` until `close`.
+        rrd: the recording's file; missing folders above it are created. It is named ``*.partial.rrd`` until `close`.
         spawn: start a viewer and show the run while it is computed.
-        force: replace a file that is there instead of refusing.
+        force: replace an existing file instead of refusing.
 
     Raises:
-        ArchiveError: the file is there already, or cannot be made.
+        ArchiveError: the file already exists, or cannot be created.
         TwinError: the viewer cannot be started.
-        ValueError: neither a file nor a viewer is asked for.
+        ValueError: neither a file nor a viewer is requested.
     """
 
     def __init__(self, *, rrd: Path | None = None, spawn: bool = False, force: bool = False) -> None:
@@ -81,10 +81,10 @@ class RerunSink:
             self._file.check()
 
     def close(self) -> None:
-        """Send what waits and finish the file; may be called twice. A viewer that was closed meanwhile is no error.
+        """Send the last batch and complete the file; may be called twice. A closed viewer does not raise an error.
 
         Raises:
-            ArchiveError: the end could not be written; what was written is kept under the partial name.
+            ArchiveError: the end could not be written; the part written so far is kept under the partial name.
         """
         if self._closed:
             return
@@ -98,7 +98,7 @@ class RerunSink:
             self._file.close()
 
     def discard(self) -> None:
-        """End without leaving a file; a viewer keeps what it has been shown."""
+        """End without leaving a file; a viewer keeps the data that it has."""
         if self._closed:
             return
         self._closed = True
@@ -127,7 +127,7 @@ class RerunSink:
         draw_scene(recording, header)
 
     def _viewer(self, recording: rr.RecordingStream) -> rr.GrpcSink:
-        """Start a viewer, or find the one that runs."""
+        """Start a viewer, or use a running one."""
         try:
             rr.spawn(port=_PORT, connect=False, hide_welcome_screen=True, recording=recording)
         except RuntimeError as error:
@@ -146,7 +146,7 @@ class RerunSink:
             self._send_batch()
 
     def _change_tool(self, step: Step) -> None:
-        """The mesh of the tool that is now in the spindle, or none."""
+        """Draw the tool in the spindle, or clear it."""
         tool = self._tools.get(step.tool)
         moment = (step.t_s, step.index, step.nc_line)
         if tool is None:
@@ -226,7 +226,7 @@ class RerunSink:
             self._recording.send_columns(entity, moments.columns(), columns, strict=True)
 
     def _log(self, entity: str, moment: tuple[float, int, int] | None, what: rr.AsComponents) -> None:
-        """One row of an entity; None for what holds at all times."""
+        """One row of an entity; None for a static one."""
         if self._recording is None:
             return
         if moment is not None:

@@ -1,4 +1,4 @@
-"""A scene that does not change, as a rerun recording: meshes, lines, points, a text."""
+"""A static scene as a rerun recording: meshes, lines, points, a text."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.sinks.rerun.file import RecordingFile
 
-#: Not that of runs, so that a viewer does not lay one out as the other.
+#: Different from that of runs, so that a viewer does not use the layout of one for the other.
 _APPLICATION = "twin_scene"
-#: What is seen of a scene from the front right above, in multiples of its size.
+#: Position of the camera, from front, right and above, in multiples of the scene's size.
 _EYE = np.array((0.5, -0.75, 0.55))
 
 Colors = NDArray[np.uint8]
@@ -59,7 +59,7 @@ class Still:
 
     Attributes:
         name: the recording's name in the viewer.
-        text: markdown beside it.
+        text: Markdown next to it.
     """
 
     name: str
@@ -74,10 +74,10 @@ def write_still(path: Path, still: Still, *, force: bool = False) -> None:
     """Write a scene.
 
     Args:
-        force: replace a file that is there.
+        force: replace a file that exists.
 
     Raises:
-        ArchiveError: a file that is there already, or cannot be written.
+        ArchiveError: a file that already exists, or cannot be written.
     """
     file = RecordingFile(path, force=force)
     recording = rr.RecordingStream(_APPLICATION)
@@ -127,7 +127,7 @@ def _flat(mesh: StillMesh) -> rr.Mesh3D:
 
 
 def _layout(still: Still) -> rrb.Blueprint:
-    """The scene, with the text beside it."""
+    """The scene, with the text on its right."""
     points = [m.vertices_mm for m in still.meshes]
     low, high = np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
     centre, size = 0.5 * (low + high), float(np.linalg.norm(high - low))

@@ -1,4 +1,4 @@
-"""The summary of a run as the text beside its timeline."""
+"""The summary of a run as a text next to its timeline."""
 
 from __future__ import annotations
 
