@@ -144,3 +144,10 @@ def test_the_command_lines_page_has_every_command_and_option() -> None:
     options = set(re.findall(r'"(--[a-z-]+)"', (ROOT / "twin" / "cli" / "commands" / "replay.py").read_text()))
     assert options
     assert {o for o in options if o not in page} == set()
+
+
+def test_the_citation_has_the_package_s_version_and_licence(settings: dict[str, Any]) -> None:
+    citation = dict(re.findall(r"^([a-z-]+): (\S.*)$", (ROOT / "CITATION.cff").read_text(), flags=re.M))
+    project = settings["project"]
+    assert (citation["version"], citation["license"]) == (project["version"], project["license"])
+    assert f"name: {project['authors'][0]['name']}" in (ROOT / "CITATION.cff").read_text()
