@@ -76,7 +76,7 @@ def zipped() -> bytes:
     return buffer.getvalue()
 
 
-#: Contents of a file, and the code of its first mistake, None where it runs.
+#: Contents of a file, and the code of its first error, None where it runs.
 ODD_FILES: dict[str, tuple[bytes, str | None]] = {
     "empty": (b"", None),
     "blanks": (b" \t \n\n   \n", None),
@@ -150,14 +150,14 @@ def test_odd_files_on_the_command_line(odd: tuple[Path, str | None], capsys: pyt
     tools.write_text("T1 P1 Z50 D10\nT2 P2 Z60 D6.8\nT3 P3 Z70 D8\n")
     expected = 0 if code is None else 1
     assert command(["check", str(path), "--tool-table", str(tools)]) == expected
-    told = capsys.readouterr()
-    assert (code is None) == (": no mistakes" in told.out)
-    assert code is None or f"[{code}]" in told.out
+    printed = capsys.readouterr()
+    assert (code is None) == (": no errors" in printed.out)
+    assert code is None or f"[{code}]" in printed.out
     assert command(["motions", str(path), "--tool-table", str(tools)]) == expected
-    told = capsys.readouterr()
-    assert all(json.loads(line) for line in told.out.splitlines())
-    assert told.err == "" if code is None else f"[{code}]" in told.err
-    assert "Traceback" not in told.out + told.err
+    printed = capsys.readouterr()
+    assert all(json.loads(line) for line in printed.out.splitlines())
+    assert printed.err == "" if code is None else f"[{code}]" in printed.err
+    assert "Traceback" not in printed.out + printed.err
 
 
 @pytest.mark.parametrize("dialect", ["linuxcnc", "grbl"])
@@ -167,7 +167,7 @@ def test_odd_files_in_other_languages(odd: tuple[Path, str | None], dialect: str
         first_code(odd[0], dialect)
 
 
-@pytest.mark.parametrize(("name", "reason"), [("none.nc", "no such file"), ("folder", "not a file")])
+@pytest.mark.parametrize(("name", "reason"), [("none.nc", "no such file"), ("folder", "is a directory")])
 def test_a_path_without_a_file(name: str, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "folder").mkdir()
     path = tmp_path / name
@@ -175,12 +175,12 @@ def test_a_path_without_a_file(name: str, reason: str, tmp_path: Path, capsys: p
         with pytest.raises(GcodeError, match=reason) as caught:
             read(path)
         assert caught.value.code == "unreadable-file"
-    assert command(["check", str(path)]) == 2
-    assert command(["motions", str(path)]) == 2
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert name in told.err
-    assert "Traceback" not in told.err
+    assert command(["check", str(path)]) == 1
+    assert command(["motions", str(path)]) == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert name in printed.err
+    assert "Traceback" not in printed.err
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")
@@ -191,7 +191,7 @@ def test_a_file_without_permission(tmp_path: Path, capsys: pytest.CaptureFixture
     with pytest.raises(GcodeError, match="Permission denied") as caught:
         read_program(path)
     assert caught.value.code == "unreadable-file"
-    assert command(["check", str(path)]) == 2
+    assert command(["check", str(path)]) == 1
     assert "Traceback" not in capsys.readouterr().err
 
 
@@ -282,7 +282,7 @@ def test_what_is_no_number_is_no_number(dialect: str, text: str, code: str, colu
     assert (error.code, error.place.column) == (code, column)
 
 
-def test_a_block_of_mistakes_is_given_up() -> None:
+def test_a_block_with_too_many_errors_is_given_up() -> None:
     """`check` does not look for what is left of a block word by word for ever."""
     text = f"{'G1 ' * 1300}\nG0 X1\n" * 10 + "M30"
     with time_bound(20.0):
