@@ -35,7 +35,11 @@ def results() -> Console:
     """Standard output for tables."""
     from rich.console import Console
 
-    return Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
+    class Results(Console):
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError  # without this, rich ends the program with code 1
+
+    return Results(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
 
 
 def fail(message: str) -> None:

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import json
+import os
+import platform
+import re
 import subprocess
 import sys
+from pathlib import Path
 
+import numba
 import pytest
 
+from gcode.cli import exit_codes as gcode_codes
 from gcode.errors import GcodeError, Place
 from twin import __version__
+from twin.cli import exit_codes as twin_codes
 from twin.cli import run
 from twin.cli.run import message_of
 from twin.errors import JobError, MeshError
 from twin.job import job_schema
 
+ROOT = Path(__file__).parents[2]
+REFERENCE = ROOT / "recordings" / "reference" / "slot.mcap"
 COMMANDS = ("replay", "view", "info", "export", "mesh", "schema")
 
 
@@ -42,7 +51,55 @@ def test_help_needs_nothing_heavy() -> None:
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["--version"]) == 0
-    assert capsys.readouterr().out == f"{__version__}\n"
+    lines = dict(line.split() for line in capsys.readouterr().out.splitlines())
+    assert list(lines) == ["twin", "python", "numba", "numpy", "rerun-sdk"]
+    assert lines["twin"] == __version__
+    assert lines["python"] == platform.python_version()
+    assert lines["numba"] == numba.__version__
+
+
+def test_without_arguments_there_is_the_help_and_the_code_of_a_wrong_use(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run([]) == 2
+    assert "Usage: twin" in capsys.readouterr().out
+
+
+def test_completion_can_be_installed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["--help"]) == 0
+    shown = capsys.readouterr().out
+    assert "--install-completion" in shown
+    assert "--show-completion" in shown
+
+
+def in_a_process(*arguments: str | Path, **more: str) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "twin", *map(str, arguments)]
+    return subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=ROOT, env={**os.environ, **more}
+    )
+
+
+def test_commands_are_completed() -> None:
+    asked = {"_TWIN_COMPLETE": "complete_bash", "COMP_WORDS": "twin re", "COMP_CWORD": "1"}
+    assert in_a_process(**asked).communicate()[0].decode().split() == ["replay", "reach"]
+
+
+@pytest.mark.parametrize(
+    "arguments", [["export", REFERENCE, "-"], ["info", REFERENCE], ["schema"]], ids=lambda a: str(a[0])
+)
+def test_a_reader_that_closes_its_pipe_ends_the_command_without_a_message(arguments: list[str | Path]) -> None:
+    process = in_a_process(*arguments)
+    assert process.stdout is not None
+    assert process.stderr is not None
+    process.stdout.close()
+    assert process.stderr.read() == b""
+    assert process.wait() == 141
+    process.stderr.close()
+
+
+def test_gcode_and_twin_have_the_same_exit_codes() -> None:
+    shared = {name: value for name, value in vars(gcode_codes).items() if name.isupper()}
+    assert shared == {"OK": 0, "ERROR": 1, "USAGE": 2, "SIGNAL": 128}
+    assert {name: getattr(twin_codes, name) for name in shared} == shared
+    assert {twin_codes.COLLISION, twin_codes.OUT_OF_TOLERANCE} & set(shared.values()) == set()
 
 
 @pytest.mark.parametrize(
@@ -53,7 +110,7 @@ def test_wrong_arguments_are_usage_errors(arguments: list[str], capsys: pytest.C
     assert run(arguments) == 2
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert "Usage: twin" in captured.err
+    assert re.fullmatch(r"error: .+; see 'twin.* --help'\n", captured.err)
 
 
 def test_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import chain
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, BinaryIO, get_args
 
 from twin.archive.container.partial import partial_path, reason
 from twin.archive.force_table import force_schema, force_tables
@@ -68,6 +68,21 @@ def export_forces(run: str | PathLike[str], out: str | PathLike[str], on: ForceO
     return rows
 
 
+def write_csv(run: str | PathLike[str], stream: BinaryIO, on: ForceOn = "tool") -> None:
+    """Write all force samples of a run as CSV to a stream, with flat memory.
+
+    Raises:
+        ArchiveError: unknown ``on``, or a run that cannot be read.
+        OSError: the stream cannot be written, or its reader is gone.
+    """
+    _check_on(on)
+    tables = force_tables(read_run(run), on)
+    first = next(tables)
+    with _csv_to(stream, force_schema(on)) as sink:
+        for table in chain([first], tables):
+            sink.write_table(table)
+
+
 def _check_on(on: str) -> None:
     if on not in get_args(ForceOn):
         raise ArchiveError(f"forces on {on!r} are not known, expected {' or '.join(map(repr, get_args(ForceOn)))}")
@@ -90,12 +105,17 @@ def _replacing(target: Path) -> Iterator[Path]:
 
 @contextmanager
 def _csv(path: Path, schema: pa.Schema) -> Iterator[Any]:
+    with path.open("wb") as file, _csv_to(file, schema) as sink:
+        yield sink
+
+
+@contextmanager
+def _csv_to(stream: BinaryIO, schema: pa.Schema) -> Iterator[Any]:
     from pyarrow import csv
 
-    with path.open("wb") as file:
-        file.write(f"{','.join(schema.names)}\n".encode())
-        with csv.CSVWriter(file, schema, write_options=csv.WriteOptions(include_header=False)) as sink:
-            yield sink
+    stream.write(f"{','.join(schema.names)}\n".encode())
+    with csv.CSVWriter(stream, schema, write_options=csv.WriteOptions(include_header=False)) as sink:
+        yield sink
 
 
 @contextmanager

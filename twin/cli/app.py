@@ -24,10 +24,8 @@ app = typer.Typer(
     name="twin",
     cls=HelpGroup,
     help="A machining digital twin: replays NC programs, removes material, predicts cutting forces.",
-    epilog="Exit codes: 0 done, 1 a mistake that the message names, 2 wrong arguments, 3 a collision under --strict, "
-    "4 out of tolerance, 130 Ctrl-C.",
-    no_args_is_help=True,
-    add_completion=False,
+    epilog="Exit codes: 0 done, 1 an error that the message names, 2 wrong use of the command line, 3 a collision "
+    "under --strict, 4 out of tolerance, 130 Ctrl-C, 141 closed pipe.",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -53,15 +51,26 @@ app.command("machinable", hidden=True, cls=HelpCommand)(reach)
 
 def _print_version(wanted: bool) -> None:
     if wanted:
+        import platform
+        from importlib.metadata import version
+
         from twin.version import __version__
 
-        typer.echo(__version__)
+        typer.echo(f"twin {__version__}\npython {platform.python_version()}")
+        for package in ("numba", "numpy", "rerun-sdk"):
+            typer.echo(f"{package} {version(package)}")
         raise typer.Exit
 
 
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and end.")
+        bool,
+        typer.Option(
+            "--version",
+            callback=_print_version,
+            is_eager=True,
+            help="Print the versions of twin, Python, numba, numpy and rerun, and exit.",
+        ),
     ] = False,
 ) -> None: ...

@@ -1,19 +1,13 @@
-"""The two streams that people read."""
+"""Standard output for results, standard error for messages."""
 
 from __future__ import annotations
-
-import sys
 
 from rich.console import Console
 from rich.text import Text
 
-#: Width of what is written to a file or a pipe.
-WIDTH = 100
+from gcode.cli.console import results
 
-
-def results() -> Console:
-    """Standard output."""
-    return Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
+__all__ = ["errors", "fail", "results", "warn"]
 
 
 def errors() -> Console:
@@ -22,10 +16,10 @@ def errors() -> Console:
 
 
 def warn(message: str) -> None:
-    """Say something that needs attention and stops nothing."""
+    """Print something that needs attention; the program goes on."""
     errors().print(Text.assemble(("warning:", "bold yellow"), " ", message))
 
 
 def fail(message: str) -> None:
-    """Say what ended the program."""
+    """Print the error that ended the program."""
     errors().print(Text.assemble(("error:", "bold red"), " ", message))

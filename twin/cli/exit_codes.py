@@ -1,14 +1,10 @@
-"""What the program's exit code says."""
+"""Exit codes of the program; the first three and those of signals are `gcode`'s."""
 
-#: All went well; collisions may have been reported.
-OK = 0
-#: A mistake that the message on standard error names.
-ERROR = 1
-#: Arguments that make no command.
-USAGE = 2
+from gcode.cli.exit_codes import ERROR, OK, SIGNAL, USAGE
+
 #: A strict replay ended at a collision.
 COLLISION = 3
-#: What was machined, or measured, is out of tolerance.
+#: The machined part, or a measurement, is out of tolerance.
 OUT_OF_TOLERANCE = 4
-#: Ended by a signal: this plus its number, so 130 for Ctrl-C.
-SIGNAL = 128
+
+__all__ = ["COLLISION", "ERROR", "OK", "OUT_OF_TOLERANCE", "SIGNAL", "USAGE"]

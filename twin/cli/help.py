@@ -5,8 +5,10 @@ from __future__ import annotations
 from enum import Enum
 from typing import Any, TypeVar
 
+from typer import Exit
 from typer.core import TyperCommand, TyperGroup, TyperOption
 
+from gcode.cli.console import closed_pipe
 from twin.cli.options import type_metavar
 
 _Parameter = TypeVar("_Parameter")
@@ -26,6 +28,13 @@ class HelpGroup(TyperGroup):
     def get_params(self, ctx: Any) -> Any:
         """Its parameters, ``--help`` among them."""
         return _named(super().get_params(ctx))
+
+    def invoke(self, ctx: Any) -> Any:
+        """Carry out a command; a reader that closes the pipe of standard output ends it without a message."""
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:
+            raise Exit(closed_pipe()) from None
 
 
 def _named(parameters: list[_Parameter]) -> list[_Parameter]:

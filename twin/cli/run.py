@@ -1,11 +1,12 @@
-"""From arguments to an exit code: what a user can mend is one message, never a traceback."""
+"""From arguments to an exit code: every error that a user can correct is one message, never a traceback."""
 
 from __future__ import annotations
 
-import io
 import sys
 from collections.abc import Sequence
 
+from gcode.cli.console import closed_pipe
+from gcode.cli.entry import carry_out, console_script
 from gcode.errors import GcodeError
 from twin.cli import exit_codes
 from twin.errors import SettingsError, TwinError
@@ -13,10 +14,7 @@ from twin.errors import SettingsError, TwinError
 
 def main() -> None:
     """The console script."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
-    sys.exit(run(sys.argv[1:]))
+    console_script(run)
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -32,18 +30,21 @@ def run(arguments: Sequence[str]) -> int:
     from twin.cli.console import fail
 
     try:
-        app(args=list(arguments), prog_name="twin")
-    except SystemExit as end:
-        return end.code if isinstance(end.code, int) else exit_codes.ERROR
+        code = carry_out(app, arguments, "twin")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        return closed_pipe()
     except (TwinError, GcodeError) as error:
         fail(message_of(error))
     except MemoryError:
         fail("not enough memory; a larger simulation.slice_pitch_mm needs less")
+    else:
+        return code
     return exit_codes.ERROR
 
 
 def message_of(error: TwinError | GcodeError) -> str:
-    """What to print: a job file's mistakes as a list, a refused block with a caret under the word."""
+    """The message to print: the mistakes of a job file as a list, a refused block with a caret under the word."""
     if isinstance(error, GcodeError):
         return error.underlined()
     if isinstance(error, SettingsError) and len(error.problems) > 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -9,10 +10,17 @@ import typer
 
 from twin.settings.force_on import ForceOn
 
+_STANDARD_OUTPUT = Path("-")
+
 
 def export(
     run: Annotated[Path, typer.Argument(metavar="RUN.mcap", help="Archive of a run.", show_default=False)],
-    out: Annotated[Path, typer.Argument(metavar="OUT.csv|.parquet", help="Table to write.", show_default=False)],
+    out: Annotated[
+        Path,
+        typer.Argument(
+            metavar="OUT.csv|.parquet", help="Table to write; - for CSV to standard output.", show_default=False
+        ),
+    ],
     on: Annotated[
         ForceOn | None,
         typer.Option(help="Body on which the forces act; the job's output.force_on if not given.", show_default=False),
@@ -23,10 +31,14 @@ def export(
 
     Columns: t_s, spindle_angle_rad, fx_n, fy_n, fz_n, torque_nm, power_w, nc_line, tool.
     """
-    from twin.archive import export_forces
+    from twin.archive import export_forces, write_csv
     from twin.cli.console import results
 
-    rows = export_forces(run, out, on=on or _force_on(run), force=force)
+    body = on or _force_on(run)
+    if out == _STANDARD_OUTPUT:
+        write_csv(run, sys.stdout.buffer, body)
+        return
+    rows = export_forces(run, out, on=body, force=force)
     results().print(f"{rows} samples written to {out}", markup=False, soft_wrap=True)
 
 
