@@ -15,22 +15,28 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from twin.api import open_run, records, replay
+    from twin.api import compare, identify, open_run, read_log, records, replay, write_coefficients, write_report
+    from twin.comparison.comparison import Comparison
     from twin.errors import (
         ArchiveError,
         CollisionError,
         CompareError,
+        CutsError,
         IdentifyError,
         JobError,
         MeasuredError,
         MeshError,
         ReplayError,
+        SettingsError,
         StockError,
         ToolError,
         ToolPathError,
         TwinError,
     )
+    from twin.identification.result import Identified
     from twin.job import Job, job_from_dict, load_job
+    from twin.measured.log import ForceLog
+    from twin.measured.settings import CompareSettings, LogReading
     from twin.record import (
         Attachment,
         Collision,
@@ -56,11 +62,17 @@ __all__ = [
     "Collision",
     "CollisionError",
     "CompareError",
+    "CompareSettings",
+    "Comparison",
+    "CutsError",
     "Engagement",
+    "ForceLog",
     "ForceSamples",
+    "Identified",
     "IdentifyError",
     "Job",
     "JobError",
+    "LogReading",
     "MeasuredError",
     "MeshError",
     "NcEvent",
@@ -69,6 +81,7 @@ __all__ = [
     "Run",
     "RunHeader",
     "RunSummary",
+    "SettingsError",
     "Step",
     "StockError",
     "SurfaceMesh",
@@ -79,22 +92,33 @@ __all__ = [
     "TwinError",
     "WorkpiecePatch",
     "__version__",
+    "compare",
+    "identify",
     "job_from_dict",
     "load_job",
     "open_run",
+    "read_log",
     "records",
     "replay",
+    "write_coefficients",
     "write_mesh",
+    "write_report",
 ]
 
 #: Modules of the public names.
 _HOMES = {
-    "twin.api": ("open_run", "records", "replay"),
-    "twin.errors": (
-        *("ArchiveError", "CollisionError", "CompareError", "IdentifyError", "JobError", "MeasuredError"),
-        *("MeshError", "ReplayError", "StockError", "ToolError", "ToolPathError", "TwinError"),
+    "twin.api": (
+        *("compare", "identify", "open_run", "read_log", "records", "replay", "write_coefficients", "write_report"),
     ),
+    "twin.comparison.comparison": ("Comparison",),
+    "twin.errors": (
+        *("ArchiveError", "CollisionError", "CompareError", "CutsError", "IdentifyError", "JobError", "MeasuredError"),
+        *("MeshError", "ReplayError", "SettingsError", "StockError", "ToolError", "ToolPathError", "TwinError"),
+    ),
+    "twin.identification.result": ("Identified",),
     "twin.job": ("Job", "job_from_dict", "load_job"),
+    "twin.measured.log": ("ForceLog",),
+    "twin.measured.settings": ("CompareSettings", "LogReading"),
     "twin.record": (
         *("Attachment", "Collision", "Engagement", "ForceSamples", "NcEvent", "Record", "RunHeader", "RunSummary"),
         *("Step", "ToolRecord", "ToolSummary", "WorkpiecePatch"),

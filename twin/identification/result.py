@@ -12,6 +12,7 @@ from twin.identification.cuts.cuts_file import Method
 from twin.identification.cuts.measure import Measured
 from twin.identification.estimate import Estimate
 from twin.identification.harmonics import ComplexArray, to_waveform
+from twin.identification.models.straight import NAMES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -95,3 +96,8 @@ class Identified:
     at_bounds: tuple[str, ...] = ()
     source: str | None = None
     warnings: tuple[str, ...] = ()
+
+    @property
+    def coefficients(self) -> dict[str, float]:
+        """The coefficients by name: Ktc, Krc, Kac in N/mm2, Kte, Kre, Kae in N/mm; NaN where not determined."""
+        return dict(zip(NAMES, self.estimate.values.tolist(), strict=True))
