@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from twin.arrays import FloatArray
 from twin.errors import ToolError
+from twin.tools.meridian import Meridian
 
 ToolKind: TypeAlias = Literal["flat", "ball", "bull", "taper"]
 
@@ -77,6 +78,19 @@ class ToolShape:
     def nominal_radius_mm(self) -> float:
         """Half the tool's nominal diameter: disc plus corner arc."""
         return self.disc_mm + self.corner_mm
+
+    @property
+    def meridian(self) -> Meridian:
+        """The form that kernels take."""
+        return Meridian(
+            disc=float(self.disc_mm),
+            corner=float(self.corner_mm),
+            tangent=math.tan(self.taper_rad),
+            arc_radius=float(self.arc_radius_mm),
+            arc_height=float(self.arc_height_mm),
+            height=float(self.height_mm),
+            radius=float(self.max_radius_mm),
+        )
 
     @property
     def parameters(self) -> FloatArray:

@@ -79,14 +79,11 @@ class Dexels:
         return np.asarray(self.low_mm[1] + (np.arange(self.heights_mm.shape[1]) + 0.5) * self.pitch_mm[1])
 
     @property
-    def frame_mm(self) -> FloatArray:
-        """Place of the first dexel and pitch, shape (4,), as kernels take them."""
-        return np.array([self.x_mm[0], self.y_mm[0], *self.pitch_mm])
-
-    @property
-    def block_maxima_mm(self) -> FloatArray:
-        """Largest height of each block of dexels."""
-        return self._maxima
+    def arrays(self) -> kernels.Stock:
+        """The model as kernels take it; heights are shared."""
+        (x, y), (pitch_x, pitch_y) = (self.low_mm + 0.5 * self.pitch_mm).tolist(), self.pitch_mm.tolist()
+        grid = kernels.grid_of(x, y, pitch_x, pitch_y, self.floor_mm)
+        return kernels.Stock(self.heights_mm, self._maxima, grid)
 
     @property
     def points_mm(self) -> FloatArray:
@@ -121,12 +118,11 @@ class Dexels:
         Args:
             threads: how many work, None for all cores; heights do not depend on it.
         """
-        shape = tool.parameters
         rows = self._maxima.shape[0]
         parts = PARTS if len(strokes.starts_mm) + len(strokes.arcs) > _FEW else 1
         bounds = [rows * k // parts for k in range(parts + 1)]
         bands = [(a, b) for a, b in pairwise(bounds) if b > a]
-        stock = (self.heights_mm, self._maxima, self.frame_mm, self.floor_mm, shape)
+        stock = (self.arrays, tool.meridian)
         run_all(
             [partial(kernels.cut_lines, *stock, strokes.starts_mm, strokes.ends_mm, *band) for band in bands], threads
         )

@@ -1,101 +1,111 @@
 """Lower envelope of moving tools over a grid of vertical dexels; compiled.
 
-Heights are cut block by block, 8 x 8 dexels each, with the block's largest height kept beside: a block that the tool
-passes above is left after one comparison. Each dexel takes the smallest of its height and the sweep's, so order and
-parts do not matter. ``tool`` is `twin.tools.shape.ToolShape.parameters`: disc, corner, tan(taper), arc radius, arc
-height, height, radius.
+Heights are cut block by block, 8 x 8 dexels each. The largest height of every block is kept as well: a block that the
+tool passes above is skipped after one comparison. Each dexel takes the smaller of its height and the sweep's, so the
+order of strokes and their division do not matter.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.jit import njit
+from twin.tools.meridian import Meridian
+from twin.tools.meridian_kernels import is_ball, is_flat, profile_height, profile_slope, resting_offset
 
 #: Dexels along a block's side.
 BLOCK = 8
 
 
-@njit
-def _profile(tool: FloatArray, rho: float) -> float:
-    """Height of the tool's surface above the tip at a distance from the axis, at most the radius."""
-    if rho <= tool[0]:
-        return 0.0
-    if rho <= tool[3]:
-        d = rho - tool[0]
-        return tool[1] - math.sqrt(max(0.0, tool[1] * tool[1] - d * d))
-    if tool[2] > 0.0:
-        return tool[4] + (rho - tool[3]) / tool[2]
-    return tool[4]
+class Grid(NamedTuple):
+    """Positions of dexels and blocks, mm.
 
-
-@njit
-def _lean(tool: FloatArray, rho: float) -> float:
-    """Slope of the meridian at a distance from the axis, up to the radius."""
-    if rho <= tool[0]:
-        return 0.0
-    if rho < tool[3]:
-        d = rho - tool[0]
-        rest = tool[1] * tool[1] - d * d
-        return d / math.sqrt(rest) if rest > 0.0 else math.inf
-    return 1.0 / tool[2] if tool[2] > 0.0 else math.inf
-
-
-@njit
-def _resting_place(tool: FloatArray, slope: float, q: float, limit: float) -> float:
-    """S in [0, limit] with the largest slope s - h(sqrt(q q + s s)), slope >= 0 and h the convex meridian.
-
-    On the corner arc the angle kappa of the normal is found by Newton steps kept in a bracket; elsewhere it is closed.
+    Attributes:
+        x, y: position of the first dexel.
+        pitch_x, pitch_y: distance of dexels.
+        floor: height that no dexel goes below.
+        side_x, side_y: sides of a block.
+        half_x, half_y: from a block's first dexel to its middle.
+        half_diagonal: half the distance of a block's opposite corners.
     """
-    disc, corner, tangent, arc = tool[0], tool[1], tool[2], tool[3]
-    flat = math.sqrt(max(0.0, disc * disc - q * q))
-    if slope == 0.0:
-        return 0.0
-    if q < arc and corner > 0.0:
-        end = math.sqrt(arc * arc - q * q)
-        wall = math.inf if tangent == 0.0 else 1.0 / tangent
-        if wall * end / arc >= slope:
-            # with t = tan(kappa): t s = slope rho, rho = disc + corner t / sqrt(1 + t t), s = sqrt(rho rho - q q)
-            sine = max(0.0, (q - disc) / corner)
-            low, high = slope, wall
-            if sine > 0.0:
-                low = max(slope, sine / math.sqrt(max(1e-300, 1.0 - sine * sine)))
-            t = low * (1.0 + 1e-3) if sine > 0.0 else low
-            s = 0.0
-            for _ in range(80):
-                root = math.sqrt(1.0 + t * t)
-                rho = disc + corner * t / root
-                s = math.sqrt(max(0.0, rho * rho - q * q))
-                value = t * s - slope * rho
-                if value > 0.0:
-                    high = min(high, t)
-                else:
-                    low = max(low, t)
-                following = -1.0
-                if s > 0.0:
-                    turn = corner / (root * root * root)
-                    rise = s + t * rho * turn / s - slope * turn
-                    if rise > 0.0:
-                        following = t - value / rise
-                if not low <= following <= high:
-                    following = 0.5 * (low + high) if high < math.inf else 2.0 * low
-                done = abs(following - t) <= 1e-9 * t
-                t = following
-                if done:
-                    break
-            rho = disc + corner * t / math.sqrt(1.0 + t * t)
-            return min(limit, math.sqrt(max(0.0, rho * rho - q * q)))
-        flat = end
-    if tangent > 0.0:
-        wall = 1.0 / tangent
-        if slope < wall:
-            return min(limit, max(flat, slope * q / math.sqrt(wall * wall - slope * slope)))
-        return limit
-    return min(limit, flat)
+
+    x: float
+    y: float
+    pitch_x: float
+    pitch_y: float
+    floor: float
+    side_x: float
+    side_y: float
+    half_x: float
+    half_y: float
+    half_diagonal: float
+
+
+class Stock(NamedTuple):
+    """A dexel model.
+
+    Attributes:
+        heights: shape (nx, ny), changed in place.
+        maxima: shape (blocks along x, blocks along y), largest height of each block.
+        grid: where the dexels are.
+    """
+
+    heights: FloatArray
+    maxima: FloatArray
+    grid: Grid
+
+
+class _Stroke(NamedTuple):
+    """A straight motion of the tip: start and vector."""
+
+    x: float
+    y: float
+    z: float
+    dx: float
+    dy: float
+    dz: float
+
+
+class _Block(NamedTuple):
+    """Dexels i0 to i1 - 1, j0 to j1 - 1; where the first of them lies as seen from a stroke's start; their pitch."""
+
+    i0: int
+    i1: int
+    j0: int
+    j1: int
+    ex: float
+    ey: float
+    pitch_x: float
+    pitch_y: float
+    floor: float
+
+
+class _Arc(NamedTuple):
+    """A level arc of the tip; sweep is signed."""
+
+    x: float
+    y: float
+    z: float
+    radius: float
+    begin: float
+    sweep: float
+    start_x: float
+    start_y: float
+    end_x: float
+    end_y: float
+
+
+@njit
+def grid_of(x: float, y: float, pitch_x: float, pitch_y: float, floor: float) -> Grid:
+    """A grid, with the sizes of its blocks."""
+    half_x, half_y = 0.5 * (BLOCK - 1) * pitch_x, 0.5 * (BLOCK - 1) * pitch_y
+    half_diagonal = math.hypot(half_x, half_y) * (1.0 + 1e-12)
+    return Grid(x, y, pitch_x, pitch_y, floor, BLOCK * pitch_x, BLOCK * pitch_y, half_x, half_y, half_diagonal)
 
 
 @njit
@@ -107,29 +117,121 @@ def block_maxima(heights: FloatArray, maxima: FloatArray) -> None:
 
 
 @njit
-def _ball_block(
-    heights: FloatArray,
-    i0: int,
-    i1: int,
-    j0: int,
-    j1: int,
-    ex0: float,
-    ey0: float,
-    pitch_x: float,
-    pitch_y: float,
-    dx: float,
-    dy: float,
-    dz: float,
-    centre: float,
-    radius: float,
-    bottom: float,
-    largest: FloatArray,
+def _number(length: float, side: float) -> int:
+    """Number of the block in which a length from the first dexel lies."""
+    return int(math.floor(length / side))
+
+
+@njit
+def _stroke(starts: FloatArray, ends: FloatArray, k: int) -> _Stroke:
+    x, y, z = starts[k, 0], starts[k, 1], starts[k, 2]
+    return _Stroke(x, y, z, ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - z)
+
+
+@njit
+def _block(shape: tuple[int, int], grid: Grid, stroke: _Stroke, i: int, j: int) -> _Block:
+    return _Block(
+        i * BLOCK,
+        min((i + 1) * BLOCK, shape[0]),
+        j * BLOCK,
+        min((j + 1) * BLOCK, shape[1]),
+        grid.x + i * grid.side_x - stroke.x,
+        grid.y + j * grid.side_y - stroke.y,
+        grid.pitch_x,
+        grid.pitch_y,
+        grid.floor,
+    )
+
+
+@njit
+def cut_lines(
+    stock: Stock, tool: Meridian, starts: FloatArray, ends: FloatArray, first_band: int, last_band: int
 ) -> None:
-    """Cut one block by a ball on a line; e is the first dexel seen from the start, ``centre`` the ball's start height.
+    """Cut the blocks of rows ``first_band`` to ``last_band - 1`` by a tool on straight lines.
+
+    Args:
+        starts, ends: shape (k, 3), tool tip.
+    """
+    heights, maxima, grid = stock.heights, stock.maxima, stock.grid
+    radius, ball, flat = tool.radius, is_ball(tool), is_flat(tool)
+    largest = np.empty(BLOCK)
+    reached = np.empty(maxima.shape[1], dtype=np.bool_)
+    for k in range(len(starts)):
+        stroke = _stroke(starts, ends, k)
+        left = max(first_band, _number(stroke.x + min(0.0, stroke.dx) - radius - grid.x, grid.side_x))
+        right = min(last_band - 1, _number(stroke.x + max(0.0, stroke.dx) + radius - grid.x, grid.side_x))
+        bottom = max(0, _number(stroke.y + min(0.0, stroke.dy) - radius - grid.y, grid.side_y))
+        top = min(maxima.shape[1] - 1, _number(stroke.y + max(0.0, stroke.dy) + radius - grid.y, grid.side_y))
+        for i in range(left, right + 1):
+            _mark_reached(maxima[i], grid, tool, stroke, (i, bottom, top), reached)
+            for j in range(bottom, top + 1):
+                if not reached[j]:
+                    continue
+                block = _block(heights.shape, grid, stroke, i, j)
+                largest[:] = -math.inf
+                if ball:
+                    _cut_by_ball(heights, block, stroke, radius, largest)
+                elif flat:
+                    _cut_by_flat(heights, block, stroke, radius, largest)
+                else:
+                    _cut_by_any(heights, block, stroke, tool, largest)
+                maxima[i, j] = largest.max()
+
+
+@njit
+def _mark_reached(
+    maxima: FloatArray,
+    grid: Grid,
+    tool: Meridian,
+    stroke: _Stroke,
+    blocks: tuple[int, int, int],
+    reached: NDArray[np.bool_],
+) -> None:
+    """Which blocks of a row a tool on a line may reach: those nearer than its radius at the block's largest height.
+
+    Args:
+        maxima: largest height of each block of the row.
+        blocks: number of the row, its first block and its last.
+        reached: filled from the first block to the last.
+    """
+    i, bottom, top = blocks
+    disc, corner, tangent, arc_height, radius = tool.disc, tool.corner, tool.tangent, tool.arc_height, tool.radius
+    z, dx, dy, dz = stroke.z, stroke.dx, stroke.dy, stroke.dz
+    floor, half_diagonal = grid.floor, grid.half_diagonal
+    square = dx * dx + dy * dy
+    inverse = 1.0 / square if square > 0.0 else 0.0
+    # centre of the row's first block, seen from the start
+    ex = grid.x + i * grid.side_x - stroke.x + grid.half_x
+    ey0 = grid.y + grid.half_y - stroke.y
+    # part of the line within which the tool's reach covers some of a block
+    window = (radius + half_diagonal) * math.sqrt(inverse)
+    down = min(0.0, dz) if inverse == 0.0 else 0.0
+    for j in range(bottom, top + 1):
+        ey = ey0 + j * grid.side_y
+        middle = (ex * dx + ey * dy) * inverse
+        t = min(max(middle, 0.0), 1.0)
+        off_x, off_y = ex - t * dx, ey - t * dy
+        at = middle - window if dz > 0.0 else middle + window
+        lowest = z + down + (dz * min(max(at, 0.0), 1.0) if inverse > 0.0 else 0.0)
+        over = maxima[j] - lowest
+        arc = min(max(over, 0.0), arc_height)
+        wide = disc + math.sqrt(max(0.0, arc * (2.0 * corner - arc))) + max(0.0, over - arc_height) * tangent
+        reach = min(wide, radius) + half_diagonal
+        away = off_x * off_x + off_y * off_y
+        reached[j] = (over > 0.0) & (maxima[j] > floor) & (away <= reach * reach)
+
+
+@njit
+def _cut_by_ball(heights: FloatArray, block: _Block, stroke: _Stroke, radius: float, largest: FloatArray) -> None:
+    """Cut one block by a ball on a line.
 
     The ball's lower side over a dexel is the least of centre + dz t - sqrt(rest - S (t - middle)^2); S the square of
-    the level length, rest that of half the chord of the swept disc. Its minimum lies at ``best``.
+    the level length, rest that of half the chord of the swept disc. The loop over dexels has no branches, so that the
+    compiler can work on several at once.
     """
+    i0, i1, j0, j1, ex0, ey0, pitch_x, pitch_y, floor = block
+    _, _, z0, dx, dy, dz = stroke
+    centre = z0 + radius
     square = dx * dx + dy * dy
     inverse = 1.0 / square if square > 0.0 else 0.0
     root_inverse = math.sqrt(inverse)
@@ -153,7 +255,7 @@ def _ball_block(
             last = min(1.0, middle + root * root_inverse)
             t = min(max(middle - lead * root, first), last)
             off = t - middle
-            z = max(bottom, centre + dz * t - math.sqrt(max(0.0, inside - square * off * off)))
+            z = max(floor, centre + dz * t - math.sqrt(max(0.0, inside - square * off * off)))
             old = row[j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
             row[j] = new
@@ -161,25 +263,10 @@ def _ball_block(
 
 
 @njit
-def _flat_block(
-    heights: FloatArray,
-    i0: int,
-    i1: int,
-    j0: int,
-    j1: int,
-    ex0: float,
-    ey0: float,
-    pitch_x: float,
-    pitch_y: float,
-    dx: float,
-    dy: float,
-    dz: float,
-    tip: float,
-    radius: float,
-    bottom: float,
-    largest: FloatArray,
-) -> None:
+def _cut_by_flat(heights: FloatArray, block: _Block, stroke: _Stroke, radius: float, largest: FloatArray) -> None:
     """Cut one block by a flat tool on a line: the lower end of the time in which its disc covers the dexel."""
+    i0, i1, j0, j1, ex0, ey0, pitch_x, pitch_y, floor = block
+    _, _, tip, dx, dy, dz = stroke
     square = dx * dx + dy * dy
     inverse = 1.0 / square if square > 0.0 else 0.0
     if square == 0.0:
@@ -198,7 +285,7 @@ def _flat_block(
             middle = (ex * dx + ey * dy) * inverse
             first = max(0.0, middle - half)
             last = min(1.0, middle + half)
-            z = max(bottom, tip + dz * (first if dz > 0.0 else last))
+            z = max(floor, tip + dz * (first if dz > 0.0 else last))
             old = row[j]
             new = z if (rest >= 0.0) & (first <= last) & (z < old) else old
             row[j] = new
@@ -206,28 +293,16 @@ def _flat_block(
 
 
 @njit
-def _round_block(
-    heights: FloatArray,
-    i0: int,
-    i1: int,
-    j0: int,
-    j1: int,
-    ex0: float,
-    ey0: float,
-    pitch_x: float,
-    pitch_y: float,
-    dx: float,
-    dy: float,
-    dz: float,
-    tip: float,
-    tool: FloatArray,
-    bottom: float,
-    largest: FloatArray,
-) -> None:
-    """Cut one block by any tool on a line; the place along it is searched only where the sweep can be low enough."""
+def _cut_by_any(heights: FloatArray, block: _Block, stroke: _Stroke, tool: Meridian, largest: FloatArray) -> None:
+    """Cut one block by any tool on a line; the position along it is searched only where the sweep can be low enough.
+
+    Heights before the cut are kept as the largest ones: they are bounds, and save a pass over the block.
+    """
+    i0, i1, j0, j1, ex0, ey0, pitch_x, pitch_y, floor = block
+    _, _, tip, dx, dy, dz = stroke
+    radius = tool.radius
     square = dx * dx + dy * dy
     length = math.sqrt(square)
-    radius = tool[6]
     for i in range(i1 - i0):
         row = heights[i0 + i][j0:j1]
         ex = ex0 + i * pitch_x
@@ -238,7 +313,7 @@ def _round_block(
             if square == 0.0:
                 away = math.sqrt(ex * ex + ey * ey)
                 if away <= radius:
-                    row[j] = min(old, max(bottom, tip + min(0.0, dz) + _profile(tool, away)))
+                    row[j] = min(old, max(floor, tip + min(0.0, dz) + profile_height(tool, away)))
                 continue
             q = abs(ex * dy - ey * dx) / length
             rest = radius * radius - q * q
@@ -246,326 +321,163 @@ def _round_block(
                 continue
             root = math.sqrt(rest)
             foot = (ex * dx + ey * dy) / length
-            # places s from the foot of the dexel on the line
+            # positions s from the foot of the dexel on the line
             low, high = max(-foot, -root), min(length - foot, root)
             if low > high:
                 continue
             slope = dz / length
             nearest = min(max(0.0, low), high)
-            floor = tip + (foot + (low if dz > 0.0 else high)) * slope
-            if floor + _profile(tool, min(radius, math.sqrt(q * q + nearest * nearest))) >= old:
+            least = tip + (foot + (low if dz > 0.0 else high)) * slope
+            if least + profile_height(tool, min(radius, math.sqrt(q * q + nearest * nearest))) >= old:
                 continue
             s = nearest
             if dz != 0.0:
                 # the height along the line is convex: on a short line it most often falls or rises all the way
-                rho = math.sqrt(q * q + low * low)
-                if rho > 0.0 and slope + _lean(tool, rho) * low / rho >= 0.0:
+                rho_low, rho_high = math.sqrt(q * q + low * low), math.sqrt(q * q + high * high)
+                if rho_low > 0.0 and slope + profile_slope(tool, rho_low) * low / rho_low >= 0.0:
                     s = low
+                elif rho_high > 0.0 and slope + profile_slope(tool, rho_high) * high / rho_high <= 0.0:
+                    s = high
                 else:
-                    rho = math.sqrt(q * q + high * high)
-                    if rho > 0.0 and slope + _lean(tool, rho) * high / rho <= 0.0:
-                        s = high
-                    else:
-                        s = _resting_place(tool, abs(slope), q, root)
-                        s = min(max(-s if slope > 0.0 else s, low), high)
-            z = tip + (foot + s) * slope + _profile(tool, min(radius, math.sqrt(q * q + s * s)))
+                    s = resting_offset(tool, abs(slope), q, root)
+                    s = min(max(-s if slope > 0.0 else s, low), high)
+            z = tip + (foot + s) * slope + profile_height(tool, min(radius, math.sqrt(q * q + s * s)))
             if z < old:
-                row[j] = max(bottom, z)
+                row[j] = max(floor, z)
 
 
 @njit
-def _reached(
-    maxima: FloatArray,
-    near: NDArray[np.bool_],
-    bottom: int,
-    top: int,
-    ex: float,
-    ey0: float,
-    side_y: float,
-    dx: float,
-    dy: float,
-    dz: float,
-    z0: float,
-    inverse: float,
-    window: float,
-    diagonal: float,
-    underside: float,
-    tool: FloatArray,
-) -> None:
-    """Which blocks of one row a tool on a line may reach: those nearer than its radius at the block's largest height.
-
-    Args:
-        maxima: largest height of each block of the row.
-        near: filled from ``bottom`` to ``top``.
-        ex, ey0: centre of the row's first block, seen from the start.
-        inverse: 1 / square of the level length, 0 for none.
-        window: part of the line within which the tool's reach covers some of a block.
-    """
-    down = min(0.0, dz) if inverse == 0.0 else 0.0
-    for j in range(bottom, top + 1):
-        ey = ey0 + j * side_y
-        middle = (ex * dx + ey * dy) * inverse
-        t = min(max(middle, 0.0), 1.0)
-        off_x, off_y = ex - t * dx, ey - t * dy
-        at = middle - window if dz > 0.0 else middle + window
-        lowest = z0 + down + (dz * min(max(at, 0.0), 1.0) if inverse > 0.0 else 0.0)
-        over = maxima[j] - lowest
-        arc = min(max(over, 0.0), tool[4])
-        wide = tool[0] + math.sqrt(max(0.0, arc * (2.0 * tool[1] - arc))) + max(0.0, over - tool[4]) * tool[2]
-        reach = min(wide, tool[6]) + diagonal
-        away = off_x * off_x + off_y * off_y
-        near[j] = (over > 0.0) & (maxima[j] > underside) & (away <= reach * reach)
-
-
-@njit
-def cut_lines(
-    heights: FloatArray,
-    maxima: FloatArray,
-    frame: FloatArray,
-    underside: float,
-    tool: FloatArray,
-    starts: FloatArray,
-    ends: FloatArray,
-    first_band: int,
-    last_band: int,
-) -> None:
-    """Cut the blocks of rows ``first_band`` to ``last_band - 1`` by a tool on straight lines.
-
-    Args:
-        heights: shape (nx, ny), in place.
-        maxima: shape (blocks along x, blocks along y), largest height of each block, kept.
-        frame: x and y of the first dexel, pitch along x and y.
-        underside: height that no dexel goes below.
-        starts, ends: shape (k, 3), tool tip.
-    """
-    radius = tool[6]
-    ball = tool[0] == 0.0 and tool[2] == 0.0
-    flat = tool[1] == 0.0 and tool[2] == 0.0
-    side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
-    reach_x, reach_y = 0.5 * (BLOCK - 1) * frame[2], 0.5 * (BLOCK - 1) * frame[3]
-    diagonal = math.hypot(reach_x, reach_y) * (1.0 + 1e-12)
-    largest = np.empty(BLOCK)
-    near = np.empty(maxima.shape[1], dtype=np.bool_)
-    for k in range(len(starts)):
-        x0, y0, z0 = starts[k, 0], starts[k, 1], starts[k, 2]
-        dx, dy, dz = ends[k, 0] - x0, ends[k, 1] - y0, ends[k, 2] - z0
-        left = max(first_band, int(math.floor((x0 + min(0.0, dx) - radius - frame[0]) / side_x)))
-        right = min(last_band - 1, int(math.floor((x0 + max(0.0, dx) + radius - frame[0]) / side_x)))
-        bottom = max(0, int(math.floor((y0 + min(0.0, dy) - radius - frame[1]) / side_y)))
-        top = min(maxima.shape[1] - 1, int(math.floor((y0 + max(0.0, dy) + radius - frame[1]) / side_y)))
-        square = dx * dx + dy * dy
-        inverse = 1.0 / square if square > 0.0 else 0.0
-        window = (radius + diagonal) * math.sqrt(inverse)
-        for i in range(left, right + 1):
-            ex0 = frame[0] + i * side_x - x0
-            _reached(
-                maxima[i],
-                near,
-                bottom,
-                top,
-                ex0 + reach_x,
-                frame[1] + reach_y - y0,
-                side_y,
-                dx,
-                dy,
-                dz,
-                z0,
-                inverse,
-                window,
-                diagonal,
-                underside,
-                tool,
-            )
-            for j in range(bottom, top + 1):
-                if not near[j]:
-                    continue
-                ey0 = frame[1] + j * side_y - y0
-                i0, i1 = i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])
-                j0, j1 = j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])
-                largest[:] = -math.inf
-                if ball:
-                    _ball_block(
-                        heights,
-                        i0,
-                        i1,
-                        j0,
-                        j1,
-                        ex0,
-                        ey0,
-                        frame[2],
-                        frame[3],
-                        dx,
-                        dy,
-                        dz,
-                        z0 + radius,
-                        radius,
-                        underside,
-                        largest,
-                    )
-                elif flat:
-                    _flat_block(
-                        heights,
-                        i0,
-                        i1,
-                        j0,
-                        j1,
-                        ex0,
-                        ey0,
-                        frame[2],
-                        frame[3],
-                        dx,
-                        dy,
-                        dz,
-                        z0,
-                        radius,
-                        underside,
-                        largest,
-                    )
-                else:
-                    _round_block(
-                        heights, i0, i1, j0, j1, ex0, ey0, frame[2], frame[3], dx, dy, dz, z0, tool, underside, largest
-                    )
-                maxima[i, j] = largest.max()
-
-
-@njit
-def cut_arcs(
-    heights: FloatArray,
-    maxima: FloatArray,
-    frame: FloatArray,
-    underside: float,
-    tool: FloatArray,
-    arcs: FloatArray,
-    first_band: int,
-    last_band: int,
-) -> None:
-    """The same for level arcs: a tool at one height stands nearest to a dexel where the arc does.
+def cut_arcs(stock: Stock, tool: Meridian, arcs: FloatArray, first_band: int, last_band: int) -> None:
+    """The same for level arcs: a tool at one height comes closest to a dexel where the arc does.
 
     Args:
         arcs: shape (k, 8): centre x, y, tip z, radius of the path, start angle, signed sweep, x and y of the end.
     """
-    radius = tool[6]
-    side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
-    reach_x, reach_y = 0.5 * (BLOCK - 1) * frame[2], 0.5 * (BLOCK - 1) * frame[3]
-    diagonal = math.hypot(reach_x, reach_y) * (1.0 + 1e-12)
+    heights, maxima, grid = stock.heights, stock.maxima, stock.grid
+    radius, half_diagonal = tool.radius, grid.half_diagonal
     for k in range(len(arcs)):
-        cx, cy, z0, path = arcs[k, 0], arcs[k, 1], arcs[k, 2], arcs[k, 3]
-        begin, sweep = arcs[k, 4], arcs[k, 5]
-        sx, sy = cx + path * math.cos(begin), cy + path * math.sin(begin)
-        ex, ey = arcs[k, 6], arcs[k, 7]
-        low_x, high_x, low_y, high_y = min(sx, ex), max(sx, ex), min(sy, ey), max(sy, ey)
-        for quarter in range(4):
-            turn = quarter * 0.5 * math.pi - begin
-            turn = turn % (2.0 * math.pi) if sweep > 0.0 else (-turn) % (2.0 * math.pi)
-            if turn <= abs(sweep):
-                if quarter == 0:
-                    high_x = cx + path
-                elif quarter == 1:
-                    high_y = cy + path
-                elif quarter == 2:
-                    low_x = cx - path
-                else:
-                    low_y = cy - path
-        left = max(first_band, int(math.floor((low_x - radius - frame[0]) / side_x)))
-        right = min(last_band - 1, int(math.floor((high_x + radius - frame[0]) / side_x)))
-        bottom = max(0, int(math.floor((low_y - radius - frame[1]) / side_y)))
-        top = min(maxima.shape[1] - 1, int(math.floor((high_y + radius - frame[1]) / side_y)))
+        arc = _arc(arcs, k)
+        low_x, high_x, low_y, high_y = _arc_box(arc)
+        left = max(first_band, _number(low_x - radius - grid.x, grid.side_x))
+        right = min(last_band - 1, _number(high_x + radius - grid.x, grid.side_x))
+        bottom = max(0, _number(low_y - radius - grid.y, grid.side_y))
+        top = min(maxima.shape[1] - 1, _number(high_y + radius - grid.y, grid.side_y))
         for i in range(left, right + 1):
             for j in range(bottom, top + 1):
                 old = maxima[i, j]
-                if old <= underside or old <= z0:
+                if old <= grid.floor or old <= arc.z:
                     continue
-                x, y = frame[0] + i * side_x + reach_x, frame[1] + j * side_y + reach_y
-                if abs(math.hypot(x - cx, y - cy) - path) > radius + diagonal:
+                x = grid.x + i * grid.side_x + grid.half_x
+                y = grid.y + j * grid.side_y + grid.half_y
+                if abs(math.hypot(x - arc.x, y - arc.y) - arc.radius) > radius + half_diagonal:
                     continue
-                near = max(0.0, _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, ex, ey) - diagonal)
-                if near > radius or z0 + _profile(tool, near) >= old:
-                    continue
-                largest = -math.inf
-                for a in range(i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])):
-                    for b in range(j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])):
-                        if heights[a, b] > z0:
-                            x, y = frame[0] + a * frame[2], frame[1] + b * frame[3]
-                            off = _from_arc(x, y, cx, cy, path, begin, sweep, sx, sy, ex, ey)
-                            if off <= radius:
-                                heights[a, b] = min(heights[a, b], max(underside, z0 + _profile(tool, off)))
-                        largest = max(largest, heights[a, b])
-                maxima[i, j] = largest
+                near = max(0.0, _from_arc(arc, x, y) - half_diagonal)
+                if near <= radius and arc.z + profile_height(tool, near) < old:
+                    maxima[i, j] = _cut_block_by_arc(heights, grid, tool, arc, i, j)
 
 
 @njit
-def _from_arc(
-    x: float,
-    y: float,
-    cx: float,
-    cy: float,
-    path: float,
-    begin: float,
-    sweep: float,
-    sx: float,
-    sy: float,
-    ex: float,
-    ey: float,
-) -> float:
+def _cut_block_by_arc(heights: FloatArray, grid: Grid, tool: Meridian, arc: _Arc, i: int, j: int) -> float:
+    """Cut one block by a tool on a level arc; its largest height."""
+    floor, radius, z = grid.floor, tool.radius, arc.z
+    largest = -math.inf
+    for a in range(i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])):
+        for b in range(j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])):
+            if heights[a, b] > z:
+                off = _from_arc(arc, grid.x + a * grid.pitch_x, grid.y + b * grid.pitch_y)
+                if off <= radius:
+                    heights[a, b] = min(heights[a, b], max(floor, z + profile_height(tool, off)))
+            largest = max(largest, heights[a, b])
+    return largest
+
+
+@njit
+def _arc(arcs: FloatArray, k: int) -> _Arc:
+    x, y, radius, begin = arcs[k, 0], arcs[k, 1], arcs[k, 3], arcs[k, 4]
+    start_x, start_y = x + radius * math.cos(begin), y + radius * math.sin(begin)
+    return _Arc(x, y, arcs[k, 2], radius, begin, arcs[k, 5], start_x, start_y, arcs[k, 6], arcs[k, 7])
+
+
+@njit
+def _turned(arc: _Arc, angle: float) -> float:
+    """How far along the sweep a direction lies, rad in [0, 2 pi)."""
+    turn = angle - arc.begin
+    return turn % (2.0 * math.pi) if arc.sweep > 0.0 else (-turn) % (2.0 * math.pi)
+
+
+@njit
+def _arc_box(arc: _Arc) -> tuple[float, float, float, float]:
+    """Least and largest x, least and largest y of an arc."""
+    low_x, high_x = min(arc.start_x, arc.end_x), max(arc.start_x, arc.end_x)
+    low_y, high_y = min(arc.start_y, arc.end_y), max(arc.start_y, arc.end_y)
+    for quarter in range(4):
+        if _turned(arc, quarter * 0.5 * math.pi) <= abs(arc.sweep):
+            if quarter == 0:
+                high_x = arc.x + arc.radius
+            elif quarter == 1:
+                high_y = arc.y + arc.radius
+            elif quarter == 2:
+                low_x = arc.x - arc.radius
+            else:
+                low_y = arc.y - arc.radius
+    return low_x, high_x, low_y, high_y
+
+
+@njit
+def _from_arc(arc: _Arc, x: float, y: float) -> float:
     """Distance of a point from an arc in the plan."""
-    ends = math.sqrt(min((x - sx) ** 2 + (y - sy) ** 2, (x - ex) ** 2 + (y - ey) ** 2))
-    turn = math.atan2(y - cy, x - cx) - begin
-    turn = turn % (2.0 * math.pi) if sweep > 0.0 else (-turn) % (2.0 * math.pi)
-    if turn <= abs(sweep):
-        return min(ends, abs(math.hypot(x - cx, y - cy) - path))
+    ends = math.sqrt(min((x - arc.start_x) ** 2 + (y - arc.start_y) ** 2, (x - arc.end_x) ** 2 + (y - arc.end_y) ** 2))
+    if _turned(arc, math.atan2(y - arc.y, x - arc.x)) <= abs(arc.sweep):
+        return min(ends, abs(math.hypot(x - arc.x, y - arc.y) - arc.radius))
     return ends
 
 
 @njit
-def rest_heights(
-    heights: FloatArray,
-    maxima: FloatArray,
-    frame: FloatArray,
-    tool: FloatArray,
-    points: FloatArray,
-    first: int,
-    last: int,
-    out: FloatArray,
-) -> None:
+def rest_heights(stock: Stock, tool: Meridian, points: FloatArray, first: int, last: int, out: FloatArray) -> None:
     """Tip height over points ``first`` to ``last - 1`` at which a tool coming down touches the first dexel.
 
     Args:
         points: shape (m, 2).
         out: shape (m,), filled; -inf where no dexel lies below the tool.
     """
-    radius = tool[6]
-    side_x, side_y = BLOCK * frame[2], BLOCK * frame[3]
-    wide_x, wide_y = (BLOCK - 1) * frame[2], (BLOCK - 1) * frame[3]
+    heights, maxima, grid = stock.heights, stock.maxima, stock.grid
+    low_x, low_y, pitch_x, pitch_y, side_x, side_y = (
+        grid.x,
+        grid.y,
+        grid.pitch_x,
+        grid.pitch_y,
+        grid.side_x,
+        grid.side_y,
+    )
+    wide_x, wide_y, radius = 2.0 * grid.half_x, 2.0 * grid.half_y, tool.radius
     # the dexel that held the tool at the last point most often nearly holds it at the next
     last_a, last_b = 0, 0
     for k in range(first, last):
-        px, py = points[k, 0], points[k, 1]
+        x, y = points[k, 0], points[k, 1]
         best = -math.inf
-        away = (frame[0] + last_a * frame[2] - px) ** 2 + (frame[1] + last_b * frame[3] - py) ** 2
+        away = (low_x + last_a * pitch_x - x) ** 2 + (low_y + last_b * pitch_y - y) ** 2
         if away <= radius * radius:
-            best = heights[last_a, last_b] - _profile(tool, math.sqrt(away))
-        left = max(0, int(math.floor((px - radius - frame[0]) / side_x)))
-        right = min(maxima.shape[0] - 1, int(math.floor((px + radius - frame[0]) / side_x)))
-        bottom = max(0, int(math.floor((py - radius - frame[1]) / side_y)))
-        top = min(maxima.shape[1] - 1, int(math.floor((py + radius - frame[1]) / side_y)))
+            best = heights[last_a, last_b] - profile_height(tool, math.sqrt(away))
+        left = max(0, _number(x - radius - low_x, side_x))
+        right = min(maxima.shape[0] - 1, _number(x + radius - low_x, side_x))
+        bottom = max(0, _number(y - radius - low_y, side_y))
+        top = min(maxima.shape[1] - 1, _number(y + radius - low_y, side_y))
         for at in range((right - left + 1) * (top - bottom + 1)):
             i, j = left + at // (top - bottom + 1), bottom + at % (top - bottom + 1)
             if maxima[i, j] <= best:
                 continue
-            gap_x = max(0.0, frame[0] + i * side_x - px, px - frame[0] - i * side_x - wide_x)
-            gap_y = max(0.0, frame[1] + j * side_y - py, py - frame[1] - j * side_y - wide_y)
+            gap_x = max(0.0, low_x + i * side_x - x, x - low_x - i * side_x - wide_x)
+            gap_y = max(0.0, low_y + j * side_y - y, y - low_y - j * side_y - wide_y)
             near = gap_x * gap_x + gap_y * gap_y
-            if near > radius * radius:
-                continue
-            if maxima[i, j] - _profile(tool, math.sqrt(near)) <= best:
+            if near > radius * radius or maxima[i, j] - profile_height(tool, math.sqrt(near)) <= best:
                 continue
             for a in range(i * BLOCK, min((i + 1) * BLOCK, heights.shape[0])):
                 for b in range(j * BLOCK, min((j + 1) * BLOCK, heights.shape[1])):
                     if heights[a, b] <= best:
                         continue
-                    away = (frame[0] + a * frame[2] - px) ** 2 + (frame[1] + b * frame[3] - py) ** 2
+                    away = (low_x + a * pitch_x - x) ** 2 + (low_y + b * pitch_y - y) ** 2
                     if away <= radius * radius:
-                        tip = heights[a, b] - _profile(tool, math.sqrt(away))
+                        tip = heights[a, b] - profile_height(tool, math.sqrt(away))
                         if tip > best:
                             best, last_a, last_b = tip, a, b
         out[k] = best
@@ -573,7 +485,7 @@ def rest_heights(
 
 @njit
 def thinned(points: FloatArray, spacing: float, chosen: NDArray[np.bool_]) -> None:
-    """Choose points, in their order, that stand at least ``spacing`` from all chosen before.
+    """Choose points, in their order, that lie at least ``spacing`` from all chosen before.
 
     Args:
         points: shape (m, 2).
@@ -584,6 +496,7 @@ def thinned(points: FloatArray, spacing: float, chosen: NDArray[np.bool_]) -> No
     low_x, low_y = points[:, 0].min(), points[:, 1].min()
     columns = int((points[:, 0].max() - low_x) / spacing) + 1
     rows = int((points[:, 1].max() - low_y) / spacing) + 1
+    # chosen points of every cell as a linked list
     head = np.full(columns * rows, -1, dtype=np.int64)
     following = np.full(len(points), -1, dtype=np.int64)
     for k in range(len(points)):

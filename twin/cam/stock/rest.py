@@ -161,14 +161,8 @@ def stock_heights(stock: Dexels, tool: ToolShape, points_mm: FloatArray, threads
     """Tip heights at which a tool coming down touches the stock's first dexel, shape (m,); -inf beside the stock."""
     points = np.ascontiguousarray(points_mm, dtype=np.float64)
     out = np.empty(len(points))
-    shape = tool.parameters
-    in_parts(
-        lambda a, b: kernels.rest_heights(
-            stock.heights_mm, stock.block_maxima_mm, stock.frame_mm, shape, points, a, b, out
-        ),
-        len(points),
-        threads=threads,
-    )
+    own, shape = stock.arrays, tool.meridian
+    in_parts(lambda a, b: kernels.rest_heights(own, shape, points, a, b, out), len(points), threads=threads)
     return out
 
 
