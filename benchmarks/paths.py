@@ -25,7 +25,8 @@ from twin.cam.slices.sections import SlicedPart, slice_part
 from twin.cam.surface.drop_cutter import DropCutter
 from twin.cam.surface.surface import surface_of_mesh
 from twin.planning.paths import plan, prepare
-from twin.planning.settings import settings_of
+from twin.planning.settings import PathSettings
+from twin.settings.check import checked
 from twin.tools.text import parse_tool
 
 COMMON = {"strategy": "scan", "tool": "ball 8", "direction": "y", "zigzag": False}
@@ -84,7 +85,7 @@ def at_pitch(pitch: float, stl: Path, cutter: DropCutter) -> dict[str, object]:
 
 def planned(part: SlicedPart, pitch: float, values: dict[str, object]) -> ToolPath:
     """One path."""
-    settings = settings_of({**COMMON, **values, "pitch_mm": pitch}, "benchmark")
+    settings = checked(PathSettings, {**COMMON, **values, "pitch_mm": pitch}, "benchmark")
     return plan(settings, prepare(settings, part))
 
 

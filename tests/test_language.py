@@ -31,7 +31,6 @@ NOT_CLEAN: frozenset[str] = frozenset(
         "docs/identify.md",
         "docs/job-file.md",
         "docs/measured-logs.md",
-        "docs/mold.md",
         "docs/nomenclature.md",
         "docs/offsets.md",
         "docs/paths.md",
@@ -40,7 +39,6 @@ NOT_CLEAN: frozenset[str] = frozenset(
         "docs/robustness.md",
         "examples/test_cuts/README.md",
         "examples/test_cuts",
-        "examples/torus",
         "gcode",
         "gcode/bulk",
         "gcode/cli",
@@ -62,11 +60,8 @@ NOT_CLEAN: frozenset[str] = frozenset(
         "twin/identification",
         "twin/job",
         "twin/measured",
-        "twin/moldmaking",
         "twin/motion",
-        "twin/planning",
         "twin/tools",
-        "twin/verification",
         "twin/workpiece",
     }
 )

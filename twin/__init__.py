@@ -37,6 +37,10 @@ if TYPE_CHECKING:
     from twin.job import Job, job_from_dict, load_job
     from twin.measured.log import ForceLog
     from twin.measured.settings import CompareSettings, LogReading
+    from twin.moldmaking import Mold, MoldJob, load_mold, mold
+    from twin.planning.part_reach import PartReach, reach
+    from twin.planning.planned_path import PlannedPath, plan_paths
+    from twin.planning.settings import PathSettings, ReachSettings
     from twin.record import (
         Attachment,
         Collision,
@@ -52,6 +56,8 @@ if TYPE_CHECKING:
         WorkpiecePatch,
     )
     from twin.run.run import Run
+    from twin.verification.settings import VerifySettings
+    from twin.verification.verification import Verification, verify
     from twin.version import __version__
     from twin.workpiece.mesh_file import write_mesh
     from twin.workpiece.to_mesh import SurfaceMesh
@@ -75,7 +81,13 @@ __all__ = [
     "LogReading",
     "MeasuredError",
     "MeshError",
+    "Mold",
+    "MoldJob",
     "NcEvent",
+    "PartReach",
+    "PathSettings",
+    "PlannedPath",
+    "ReachSettings",
     "Record",
     "ReplayError",
     "Run",
@@ -90,16 +102,23 @@ __all__ = [
     "ToolRecord",
     "ToolSummary",
     "TwinError",
+    "Verification",
+    "VerifySettings",
     "WorkpiecePatch",
     "__version__",
     "compare",
     "identify",
     "job_from_dict",
     "load_job",
+    "load_mold",
+    "mold",
     "open_run",
+    "plan_paths",
+    "reach",
     "read_log",
     "records",
     "replay",
+    "verify",
     "write_coefficients",
     "write_mesh",
     "write_report",
@@ -119,11 +138,17 @@ _HOMES = {
     "twin.job": ("Job", "job_from_dict", "load_job"),
     "twin.measured.log": ("ForceLog",),
     "twin.measured.settings": ("CompareSettings", "LogReading"),
+    "twin.moldmaking": ("Mold", "MoldJob", "load_mold", "mold"),
+    "twin.planning.part_reach": ("PartReach", "reach"),
+    "twin.planning.planned_path": ("PlannedPath", "plan_paths"),
+    "twin.planning.settings": ("PathSettings", "ReachSettings"),
     "twin.record": (
         *("Attachment", "Collision", "Engagement", "ForceSamples", "NcEvent", "Record", "RunHeader", "RunSummary"),
         *("Step", "ToolRecord", "ToolSummary", "WorkpiecePatch"),
     ),
     "twin.run.run": ("Run",),
+    "twin.verification.settings": ("VerifySettings",),
+    "twin.verification.verification": ("Verification", "verify"),
     "twin.version": ("__version__",),
     "twin.workpiece.mesh_file": ("write_mesh",),
     "twin.workpiece.to_mesh": ("SurfaceMesh",),

@@ -1,4 +1,4 @@
-"""`twin paths` and `twin verify`: outputs, exit codes, and what is said to mistakes."""
+"""`twin paths` and `twin verify`: outputs, exit codes, and messages for mistakes."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def test_a_scan_is_written_replayed_and_verified(part: Path, tmp_path: Path, cap
     out, picture, rrd = tmp_path / "a.nc", tmp_path / "a.png", tmp_path / "a.rrd"
     options = ["-o", str(out), "--plot", str(picture), "--rrd", str(rrd)]
     assert run(["paths", "scan", str(part), *SCAN, *options]) == 0
-    said = capfd.readouterr().out
-    assert "scan step-over 0.4 mm" in said and "Job " in said
+    printed = capfd.readouterr().out
+    assert "scan step-over 0.4 mm" in printed and "Job " in printed
     assert picture.stat().st_size > 10_000 and rrd.stat().st_size > 1_000
     assert gcode(["check", str(out)]) == 0
     assert "stepover_mm 0.4" in out.read_text()
@@ -45,12 +45,12 @@ def test_a_scan_is_written_replayed_and_verified(part: Path, tmp_path: Path, cap
     assert picture.stat().st_size > 10_000 and rrd.stat().st_size > 1_000
 
 
-def test_the_tables_of_verify_say_the_verdict(part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_the_tables_of_verify_print_the_verdict(part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run(["paths", "scan", str(part), *SCAN, "-o", str(tmp_path / "a.nc"), "-q"]) == 0
     assert run(["verify", str(tmp_path / "a.toml"), str(part), "--region", "0.5", "0.5", "1.5", "5.5"]) == 0
-    said = capfd.readouterr().out
-    assert "Deviation of the machined surface" in said and "within tolerance (20.0 µm)" in said
-    assert "on rays 0.2 mm apart" in said
+    printed = capfd.readouterr().out
+    assert "Deviation of the machined surface" in printed and "within tolerance (20.0 µm)" in printed
+    assert "on rays 0.2 mm apart" in printed
 
 
 def test_settings_files_and_options_go_together(part: Path, tmp_path: Path) -> None:
@@ -60,6 +60,24 @@ def test_settings_files_and_options_go_together(part: Path, tmp_path: Path) -> N
     assert run(["paths", "scan", str(part), "--settings", str(file), "--stepover", "1.5", "-o", str(out), "-q"]) == 0
     text = out.read_text()
     assert "stepover_mm 1.5" in text and "F432" in text
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("tool = ", "s.toml:1:8: not valid TOML"),
+        ('tool = "ball 4"\nfeed_mm_min = 0.0', "s.toml: feed_mm_min = 0.0: expected a number above 0 (cutting feed)"),
+        ('tool = "ball 4"\nlayers = 0', "s.toml: layers must be at least 1 for a scan"),
+        ('tool = "ball 4"\nregion_mm = [0, 0, 1]', "s.toml: region_mm = [0, 0, 1]: expected a list of four numbers"),
+    ],
+)
+def test_mistakes_of_settings_files(
+    part: Path, tmp_path: Path, text: str, message: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "s.toml").write_text(text)
+    command = ["paths", "scan", str(part), "--settings", str(tmp_path / "s.toml"), "-o", str(tmp_path / "a.nc")]
+    assert run(command) == 1
+    assert message in capfd.readouterr().err
 
 
 def test_contours_for_grbl_have_no_tool_change(part: Path, tmp_path: Path) -> None:
@@ -74,14 +92,14 @@ def test_contours_for_grbl_have_no_tool_change(part: Path, tmp_path: Path) -> No
     ("arguments", "message"),
     [
         (["--tool", "drill 8"], 'tool "drill 8"; expected'),
-        ([], "settings: tool: missing; expected text"),
-        (["--tool", "ball 4", "--stepover", "0"], "settings: stepover_mm = 0.0: expected a number above 0"),
-        (["--tool", "ball 4", "--stepover", "-1"], "settings: stepover_mm = -1.0: expected a number above 0"),
+        ([], "twin paths: tool: missing; expected text"),
+        (["--tool", "ball 4", "--stepover", "0"], "twin paths: --stepover = 0.0: expected a number above 0"),
+        (["--tool", "ball 4", "--stepover", "-1"], "twin paths: --stepover = -1.0: expected a number above 0"),
         (["--tool", "ball 4", "--plot", "no/a.png"], "there is no folder no"),
         (["--tool", "ball 4", "--plot", "a.jpg"], "expected a file name that ends in .png, .svg, .pdf"),
         (["--tool", "ball 4", "--rrd", "a.bin"], "a.bin: expected a file name that ends in .rrd"),
         (["--tool", "ball 4", "--settings", "none.toml"], "none.toml: cannot be read"),
-        (["--tool", "ball 4", "--floor-z", "9"], "can cut nothing of this stock"),
+        (["--tool", "ball 4", "--floor-z", "9"], "cannot cut anything of this stock"),
     ],
 )
 def test_mistakes_are_one_message_and_leave_nothing(
@@ -89,18 +107,18 @@ def test_mistakes_are_one_message_and_leave_nothing(
 ) -> None:
     before = sorted(tmp_path.iterdir())
     assert run(["paths", "scan", str(part), "--pitch", "0.5", *arguments, "-o", str(tmp_path / "a.nc")]) == 1
-    said = capfd.readouterr().err
-    assert said.startswith("error: ") and message in said and "Traceback" not in said
+    printed = capfd.readouterr().err
+    assert printed.startswith("error: ") and message in printed and "Traceback" not in printed
     assert sorted(tmp_path.iterdir()) == before
 
 
-def test_a_tool_larger_than_any_pocket_is_said_and_no_file_is_written(
+def test_a_tool_larger_than_any_pocket_is_refused_and_no_file_is_written(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     part = write_stl(tmp_path / "pocket.stl", pocket(9.0, 3.0, -2.0, -4.0))
     options = ["--tool", "flat 8", "--pitch", "0.5", "--floor-z", "-2", "--overhang", "0", "--layers", "0"]
     assert run(["paths", "contour", str(part), *options, "-o", str(tmp_path / "a.nc")]) == 1
-    assert "flat D8 can cut nothing of this stock: no pocket is wide enough" in capfd.readouterr().err
+    assert "flat D8 cannot cut anything of this stock: no pocket is wide enough" in capfd.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["pocket.stl"]
 
 
@@ -108,7 +126,7 @@ def test_files_that_are_there_are_kept(part: Path, tmp_path: Path, capfd: pytest
     out = tmp_path / "a.nc"
     out.write_text("mine")
     assert run(["paths", "scan", str(part), *SCAN, "-o", str(out)]) == 1
-    assert "is there already" in capfd.readouterr().err and out.read_text() == "mine"
+    assert "already exists" in capfd.readouterr().err and out.read_text() == "mine"
     assert run(["paths", "scan", str(part), *SCAN, "-o", str(out), "-q", "--force"]) == 0
     assert out.read_text() != "mine"
 
@@ -139,19 +157,19 @@ def test_bodies_that_cross_count_as_their_union(tmp_path: Path) -> None:
     assert run(["verify", str(tmp_path / "a.toml"), str(file), "--excess", "1.2", "-q"]) == 0
 
 
-def test_a_pitch_too_coarse_for_the_tolerance_is_told(
+def test_a_pitch_too_coarse_for_the_tolerance_gives_a_warning(
     part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     slope = write_stl(tmp_path / "slope.stl", prism([(0, -3), (10, -3), (10, 6), (0, 0)], 0.0, 6.0))
     options = ["--tool", "ball 4", "--stepover", "2", "--tolerance", "0.001", "-q", "--direction", "y"]
     assert run(["paths", "scan", str(slope), *options, "--pitch", "0.5", "-o", str(tmp_path / "a.nc")]) == 0
-    said = capfd.readouterr().err
-    assert "pitch_mm = 0.5 may be too coarse" in said and "more than tolerance_mm = 0.001" in said
+    printed = capfd.readouterr().err
+    assert "pitch_mm = 0.5 may be too coarse" in printed and "more than tolerance_mm = 0.001" in printed
 
 
 def test_wrong_tolerances_of_verify_are_refused(part: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert run(["paths", "scan", str(part), *SCAN, "-o", str(tmp_path / "a.nc"), "-q"]) == 0
     assert run(["verify", str(tmp_path / "a.toml"), str(part), "--tolerance", "0"]) == 1
-    assert "expected numbers above 0" in capfd.readouterr().err
+    assert "twin verify: --tolerance = 0.0: expected a number above 0" in capfd.readouterr().err
     assert run(["verify", str(tmp_path / "a.toml"), str(tmp_path / "none.stl")]) == 1
     assert "none.stl: cannot be read" in capfd.readouterr().err

@@ -32,7 +32,7 @@ def test_a_table_of_tools_and_all_outputs(pocket: Path, capsys: pytest.CaptureFi
     assert "flat 4: 4 regions" in text and "flat 16: 1 region" in text
     assert (folder / "a.png").read_bytes().startswith(b"\x89PNG")
     scene = Recording(folder / "a.rrd")
-    assert {"part", "leftover/flat_4", "leftover/flat_16", "thickest/flat_16"} <= set(scene.tables)
+    assert {"part", "uncut/flat_4", "uncut/flat_16", "thickest/flat_16"} <= set(scene.tables)
     (report,) = scene.column("report", "TextDocument:text")
     assert "| flat 16 | " in str(report) and "| 1 |" in str(report)
     whole = load_mesh(folder / "left" / "flat_16.stl")
@@ -42,37 +42,40 @@ def test_a_table_of_tools_and_all_outputs(pocket: Path, capsys: pytest.CaptureFi
     )
     # nothing is replaced unasked, and nothing is left half written
     assert run([*words, *outputs]) == 1
-    assert "is there already" in capsys.readouterr().err
+    assert "already exists" in capsys.readouterr().err
     assert run([*words, *outputs, "--force"]) == 0
     assert not list(folder.rglob("*.partial"))
 
 
 def test_json_and_the_largest_ball(pocket: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["reach", str(pocket), "--tool", "ball 4", "--largest", "--pitch", "0.25", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    (tool,) = told["tools"]
-    assert told["pitch_mm"] == [0.25, 0.25, 0.25] and told["largest_ball_diameter_mm"] is None
+    printed = json.loads(capsys.readouterr().out)
+    (tool,) = printed["tools"]
+    assert printed["pitch_mm"] == [0.25, 0.25, 0.25] and printed["largest_ball_diameter_mm"] is None
     assert tool["tool"] == "ball 4" and not tool["from_above"]
     assert tool["volume_mm3"] == pytest.approx(sum(r["volume_mm3"] for r in tool["regions"]))
     assert set(tool["regions"][0]) == {"volume_mm3", "thickness_mm", "deepest_mm", "low_mm", "high_mm", "centroid_mm"}
 
 
-def test_nothing_stays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_uncut_material(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     block = tmp_path / "block.stl"
     solids.torus_example().write_stl(block, solids.box((0, 0, 0), (20, 20, 8)))
     words = ["reach", str(block), "--tool", "ball 6", "--largest", "--mesh", str(tmp_path / "left")]
     assert run([*words, "--pitch", "0.5", "--plot", str(tmp_path / "a.png")]) == 0
     text = capsys.readouterr().out
-    assert "nothing" in text and "Largest ball that finishes the part: diameter 8 mm." in text
+    assert "none" in text and "Largest ball that finishes the part: diameter 8 mm." in text
     assert list((tmp_path / "left").iterdir()) == []
 
 
-def test_a_pitch_too_coarse_for_the_thickness_asked_for_is_told(
+def test_a_pitch_too_coarse_for_the_requested_thickness_gives_a_warning(
     pocket: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(["reach", str(pocket), "--tool", "ball 4", "--pitch", "0.5", "--thin", "0.01"]) == 0
-    told = capsys.readouterr().err
-    assert "slices 0.5 mm apart may show leftovers up to 0.375 mm thick that are none; for 0.01 mm expected" in told
+    warned = capsys.readouterr().err
+    assert (
+        "slices 0.5 mm apart may show uncut material up to 0.375 mm thick where there is none; for 0.01 mm expected"
+        in warned
+    )
 
 
 @pytest.mark.parametrize(
@@ -80,7 +83,7 @@ def test_a_pitch_too_coarse_for_the_thickness_asked_for_is_told(
     [
         ([], 'no tool; expected --tool "ball 8", or --largest'),
         (["--tool", "ball"], 'tool "ball"; expected "ball D"'),
-        (["--tool", "ball 8", "--pitch", "0"], "slice pitch 0 mm; expected a number above 0"),
+        (["--tool", "ball 8", "--pitch", "0"], "twin reach: --pitch = 0.0: expected a number above 0"),
         (["--tool", "taper 4 a5"], "offsets with taper tools: not possible"),
         (["--tool", "ball 8", "--rrd", "a.txt"], "a.txt: expected a file name that ends in .rrd"),
         (["--tool", "ball 8", "--plot", "no/a.png"], "there is no folder no; expected one that exists"),

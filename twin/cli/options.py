@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Collection, Mapping
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
 import typer
@@ -16,6 +16,7 @@ from rich.markup import escape
 from twin.errors import SettingsError
 from twin.settings.check import checked
 from twin.settings.keys import bare, default_text, key_of, option_names, without_unit
+from twin.settings.toml_file import read_toml
 
 Command = Callable[..., None]
 _Model = TypeVar("_Model", bound=BaseModel)
@@ -161,6 +162,16 @@ def settings_from(
     except SettingsError as error:
         own = all(problem.startswith("--") for problem in error.problems)
         raise SettingsError(command if own else source, error.problems) from None
+
+
+def settings_from_file(model: type[_Model], options: Mapping[str, Any], file: Path | None, command: str) -> _Model:
+    """Settings from a command's options and, where these are not given, from a TOML file of settings.
+
+    Raises:
+        SettingsError: the file cannot be read, or every mistake, with the option or the file's key.
+    """
+    base = {} if file is None else read_toml(file)[0]
+    return settings_from(model, options, base, command if file is None else str(file), command)
 
 
 def _named(model: type[BaseModel], options: Mapping[str, Any], key: str) -> str:

@@ -2,6 +2,7 @@
 
 from twin.moldmaking.load import load_mold, mold_from_dict
 from twin.moldmaking.model import MoldJob
+from twin.moldmaking.result import Mold, mold
 from twin.moldmaking.stages import STAGES, MoldPlan, Stage
 
-__all__ = ["STAGES", "MoldJob", "MoldPlan", "Stage", "load_mold", "mold_from_dict"]
+__all__ = ["STAGES", "Mold", "MoldJob", "MoldPlan", "Stage", "load_mold", "mold", "mold_from_dict"]

@@ -5,6 +5,7 @@ The comparison is that of the mold paper's Tables 2 and 3.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,7 +56,7 @@ def times_table(plan: MoldPlan) -> list[Times]:
     return lines
 
 
-def saved(lines: list[Times]) -> float | None:
+def saved(lines: Sequence[Times]) -> float | None:
     """Share of the raster baseline's time that the best order saves; None without the baseline."""
     others = [line for line in lines if line.name == BASELINE]
     if not others:

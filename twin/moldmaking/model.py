@@ -11,7 +11,7 @@ from pydantic import Field, Strict, model_validator
 from twin.cam.passes.roughing import StageFeeds
 from twin.cam.path.machining_time import Dynamics
 from twin.job.model import Box, Tool
-from twin.settings.table import FilePath, Point, Table
+from twin.settings.table import FilePath, Key, Point, Table
 
 
 class Part(Table):
@@ -25,8 +25,8 @@ class Part(Table):
 class MoldStock(Table):
     """The stock that the part is made from."""
 
-    box_mm: Box | None = Field(default=None, description="the stock's box; the part's box if not given")
-    top_mm: float = Field(default=0.0, ge=0.0, description="stock above the part's box without box_mm")
+    box_mm: Annotated[Box | None, Key(unset="the part's box")] = Field(default=None, description="the stock's box")
+    top_mm: float = Field(default=0.0, ge=0.0, description="stock above the part's box, if box_mm is not given")
 
 
 class MoldMachine(Table):
@@ -61,11 +61,11 @@ class StageTable(Table):
     spindle_rpm: float = Field(gt=0.0, description="spindle speed, rpm")
     feed_mm_min: float = Field(gt=0.0, description="cutting feed, mm/min")
     plunge_mm_min: float = Field(gt=0.0, description="plunge feed, mm/min")
-    ramp_mm_min: float | None = Field(
-        default=None, gt=0.0, description="feed of helices and ramps; half the cutting feed if not given"
+    ramp_mm_min: Annotated[float | None, Key(unset="half the cutting feed")] = Field(
+        default=None, gt=0.0, description="feed of helices and ramps"
     )
-    link_mm_min: float | None = Field(
-        default=None, gt=0.0, description="feed of links in cleared areas; the cutting feed if not given"
+    link_mm_min: Annotated[float | None, Key(unset="the cutting feed")] = Field(
+        default=None, gt=0.0, description="feed of links in cleared areas"
     )
 
     @property
@@ -79,26 +79,26 @@ class StageTable(Table):
         )
 
 
-class Rough(StageTable):
-    """Contour roughing."""
+class LevelStage(StageTable):
+    """Keys of the stages that cut level by level."""
 
     axial_depth_mm: float = Field(gt=0.0, description="axial depth of cut: distance between levels")
     radial_depth_mm: float = Field(
         gt=0.0, description="radial depth of cut: distance between rings, at most the tool radius"
     )
     allowance_mm: float = Field(ge=0.0, description="allowance: stock to leave on the part")
+
+
+class Rough(LevelStage):
+    """Contour roughing."""
+
     resolution_mm: float = Field(default=0.5, gt=0.0, description="longest piece of a contour during computation")
     ramp_deg: float = Field(default=3.0, gt=0.0, lt=45.0, description="steepest angle of helices and ramps")
 
 
-class Semi(StageTable):
+class Semi(LevelStage):
     """Semi-finishing of the rest material after roughing."""
 
-    axial_depth_mm: float = Field(gt=0.0, description="axial depth of cut: distance between levels")
-    radial_depth_mm: float = Field(
-        gt=0.0, description="radial depth of cut: distance between rings, at most the tool radius"
-    )
-    allowance_mm: float = Field(ge=0.0, description="allowance: stock to leave on the part")
     least_mm: float = Field(default=0.1, gt=0.0, description="thinner rest material is left to finishing")
     resolution_mm: float = Field(
         default=0.4, gt=0.0, description="distance of the positions where rest material is checked"
@@ -108,10 +108,10 @@ class Semi(StageTable):
     )
     method: Literal["greedy", "2-opt", "ils"] = Field(default="ils", description="search method for the order of cuts")
     seed: int = Field(default=1, ge=0, description="seed of the search; equal seeds give equal programs")
-    iterations: int | None = Field(
-        default=None, ge=0, description="iterations of the search at each level; 5 per cut, at least 500, if not given"
+    iterations: Annotated[int | None, Key(unset="5 per cut, at least 500")] = Field(
+        default=None, ge=0, description="iterations of the search at each level"
     )
-    budget_s: float | None = Field(
+    budget_s: Annotated[float | None, Key(unset="no limit")] = Field(
         default=None, gt=0.0, description="longest search time at each level; with it, programs depend on the computer"
     )
 
@@ -119,15 +119,17 @@ class Semi(StageTable):
 class Finish(StageTable):
     """Finishing by rows, and by level lines on steep faces."""
 
-    stepover_mm: float | None = Field(default=None, gt=0.0, description="step-over: distance between rows")
-    scallop_mm: float | None = Field(
+    stepover_mm: Annotated[float | None, Key(unset="from scallop_mm")] = Field(
+        default=None, gt=0.0, description="step-over: distance between rows"
+    )
+    scallop_mm: Annotated[float | None, Key(unset="from stepover_mm")] = Field(
         default=None, gt=0.0, description="scallop height on level faces, instead of the step-over"
     )
     chord_mm: float = Field(default=0.005, gt=0.0, description="chord tolerance: largest deviation from the exact path")
     pitch_mm: float = Field(default=0.3, gt=0.0, description="distance of the first drop-cutter positions along a row")
     direction: Literal["x", "y"] = Field(default="x", description="axis that the rows run along")
-    steep_deg: float | None = Field(
-        default=None, gt=0.0, lt=90.0, description="steeper faces are cut along level lines; none if not given"
+    steep_deg: Annotated[float | None, Key(unset="rows everywhere")] = Field(
+        default=None, gt=0.0, lt=90.0, description="steeper faces are cut along level lines"
     )
     least_mm: float = Field(default=0.01, gt=0.0, description="thinner rest material is not cut")
 
@@ -181,6 +183,10 @@ class MoldJob(MoldFile):
     """
 
     path: Path
+
+    def with_folder(self, folder: Path) -> MoldJob:
+        """The same job with its programs in another folder."""
+        return self.model_copy(update={"output": self.output.model_copy(update={"folder": folder})})
 
     def tool_of(self, stage: StageTable) -> Tool:
         """The tool of a stage."""

@@ -9,34 +9,25 @@ from typing import Any
 from twin.cam.path.to_nc import NcOptions, Operation, write_nc
 from twin.errors import ToolPathError
 from twin.job.model import Tool
+from twin.moldmaking.model import MoldJob
 from twin.moldmaking.stages import MoldPlan, Stage, StageResult
+from twin.planning.output_files import refuse_existing
 from twin.planning.replay_job import write_replay_job
 
 _NUMBERS: dict[Stage, int] = {"rough": 1001, "semi": 1002, "finish": 1003}
 _ALL = 1000
 
 
-def program_paths(plan: MoldPlan, stages: Sequence[Stage]) -> dict[str, Path]:
+def program_paths(job: MoldJob, stages: Sequence[Stage]) -> dict[str, Path]:
     """Files to be written: a program per stage and, where all stages are planned, ``all`` and ``job``."""
-    output = plan.job.output
-    suffix = "ngc" if plan.job.machine.dialect == "linuxcnc" else "nc"
+    output = job.output
+    suffix = "ngc" if job.machine.dialect == "linuxcnc" else "nc"
     names = {stage: output.folder / f"{output.name}_{stage}.{suffix}" for stage in stages}
     paths: dict[str, Path] = {str(k): v for k, v in names.items()}
-    if len(stages) == len(_NUMBERS) and plan.job.machine.dialect != "grbl":
+    if len(stages) == len(_NUMBERS) and job.machine.dialect != "grbl":
         paths["all"] = output.folder / f"{output.name}.{suffix}"
         paths["job"] = output.folder / f"{output.name}.toml"
     return paths
-
-
-def check_paths(paths: Sequence[Path], *, force: bool) -> None:
-    """Check before long work that the files may be written.
-
-    Raises:
-        ToolPathError: one exists already.
-    """
-    for path in paths:
-        if path.exists() and not force:
-            raise ToolPathError(f"{path}: is there already; expected a new folder, or leave to replace it (--force)")
 
 
 def write_programs(plan: MoldPlan, stages: Sequence[Stage], *, force: bool = False) -> dict[str, Path]:
@@ -45,8 +36,8 @@ def write_programs(plan: MoldPlan, stages: Sequence[Stage], *, force: bool = Fal
     Raises:
         ToolPathError: a file exists already, or cannot be written.
     """
-    paths = program_paths(plan, stages)
-    check_paths(list(paths.values()), force=force)
+    paths = program_paths(plan.job, stages)
+    refuse_existing(paths.values(), force=force)
     try:
         plan.job.output.folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -1,80 +1,107 @@
-"""What a tool path is made with: options of the command line, or keys of a TOML file."""
+"""Parameters of tool paths and reach analyses: keys of a TOML file, options of a command, keywords of a function."""
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError, model_validator
+from pydantic import Field, Strict, model_validator
 
-from twin.errors import ToolPathError
-from twin.settings.problems import problems_of
+from twin.settings.table import Key, Table
 
-Corners = Annotated[tuple[float, float, float, float], Strict(False)]
-Box = Annotated[tuple[float, float, float, float, float, float], Strict(False)]
+Corners: TypeAlias = Annotated[tuple[float, float, float, float], Strict(False)]
+BoxCorners: TypeAlias = Annotated[tuple[float, float, float, float, float, float], Strict(False)]
 
 
-class PathSettings(BaseModel):
-    """A tool path's parameters; lengths mm, feeds mm/min."""
+class PathSettings(Table):
+    """Parameters of a tool path; lengths in mm, feeds in mm/min."""
 
-    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
-
-    strategy: Literal["contour", "scan"] = Field(description="contour: levels of equal height; scan: parallel rows")
-    tool: str = Field(description="tool, as 'ball 8', 'flat 10', 'bull 12 r2'")
-    pitch_mm: float = Field(default=0.1, gt=0.0, description="distance of the part's slices")
-    tolerance_mm: float = Field(default=0.02, gt=0.0, description="accuracy wanted; a pitch too coarse for it is told")
-    exact: bool = Field(default=False, description="scan: rows from the triangles, by drop-cutter, not from slices")
-    stepover_mm: float = Field(default=0.5, gt=0.0, description="scan: distance of the rows")
-    allowance_mm: float = Field(default=0.0, ge=0.0, description="material to leave on the part")
-    layers: int = Field(default=1, ge=0, description="layers of roughing; contour: 0 for as many as clear the stock")
+    strategy: Literal["contour", "scan"] = Field(description="contour: levels of constant height; scan: parallel rows")
+    tool: Annotated[str, Key(metavar="TOOL")] = Field(description="tool: 'ball 8', 'flat 10', 'bull 12 r2'")
+    pitch_mm: float = Field(default=0.1, gt=0.0, description="distance between the part's slices")
+    tolerance_mm: float = Field(
+        default=0.02, gt=0.0, description="required accuracy; a pitch that may be too coarse for it gives a warning"
+    )
+    exact: Annotated[bool, Key(options=("--exact/--slices",))] = Field(
+        default=False, description="scan: rows by drop-cutter on the triangles, else from slices"
+    )
+    stepover_mm: float = Field(default=0.5, gt=0.0, description="scan: step-over, the distance between rows")
+    allowance_mm: float = Field(default=0.0, ge=0.0, description="allowance (stock to leave) on the part")
+    layers: int = Field(
+        default=1, ge=0, description="number of roughing layers; contour: 0 for as many as clear the stock"
+    )
     axial_depth_mm: float = Field(
-        default=1.0, gt=0.0, description="scan: depth of a layer; contour: distance of the levels"
+        default=1.0, gt=0.0, description="axial depth of cut; scan: step-down of layers, contour: of levels"
     )
-    radial_depth_mm: float | None = Field(
-        default=None, gt=0.0, description="contour: distance of the layers; 0.4 of the diameter if not given"
+    radial_depth_mm: Annotated[float | None, Key(unset="0.4 of the diameter")] = Field(
+        default=None, gt=0.0, description="contour: radial depth of cut, the distance between layers"
     )
-    direction: Literal["x", "y"] = Field(default="x", description="scan: axis that rows run along")
-    zigzag: bool = Field(default=True, description="scan: rows to and fro, else all one way")
-    climb: bool = Field(default=True, description="climb milling, else conventional")
-    region_mm: Corners | None = Field(
-        default=None, description="[x0, y0, x1, y1]: where the tip may be; scan: the part's box, contour: the stock's"
+    direction: Literal["x", "y"] = Field(default="x", description="scan: axis that the rows run along")
+    zigzag: Annotated[bool, Key(options=("--zigzag/--one-way",))] = Field(
+        default=True, description="scan: zigzag rows, else one-way rows"
     )
-    overhang_mm: float | None = Field(
-        default=None, ge=0.0, description="how far the tip may go beyond it; scan: 0, contour: the tool's radius"
+    climb: Annotated[bool, Key(options=("--climb/--conventional",))] = Field(
+        default=True, description="climb milling, else conventional"
     )
-    floor_z_mm: float | None = Field(default=None, description="lowest tip; the part's lowest point if not given")
-    stock_mm: Box | None = Field(
-        default=None, description="[x0, y0, z0, x1, y1, z1]: the stock; the part's box if not given"
+    region_mm: Annotated[
+        Corners | None, Key(metavar="X0 Y0 X1 Y1", unset="scan: the part's box, contour: the stock's")
+    ] = Field(default=None, description="boundary of the tool tip, x0, y0, x1, y1")
+    overhang_mm: Annotated[float | None, Key(unset="scan: 0, contour: the tool radius")] = Field(
+        default=None, ge=0.0, description="how far the tool tip may go beyond the boundary"
     )
-    remaining_mm: float | None = Field(
-        default=None, ge=0.0, description="material left on the part before; all of the stock if not given"
+    floor_z_mm: Annotated[float | None, Key(unset="the part's lowest point")] = Field(
+        default=None, description="lowest height of the tool tip"
     )
-    feed_mm_min: float = Field(default=600.0, gt=0.0, description="feed of cuts")
-    plunge_mm_min: float = Field(default=200.0, gt=0.0, description="feed down: plunges, ramps, helices")
-    link_mm_min: float | None = Field(default=None, gt=0.0, description="feed along the surface between passes")
-    lead_mm_min: float | None = Field(default=None, gt=0.0, description="feed of leads")
+    stock_mm: Annotated[BoxCorners | None, Key(metavar="X0 Y0 Z0 X1 Y1 Z1", unset="the part's box")] = Field(
+        default=None, description="stock, x0, y0, z0, x1, y1, z1"
+    )
+    remaining_mm: Annotated[float | None, Key(unset="all of the stock")] = Field(
+        default=None, ge=0.0, description="rest material on the part before this path"
+    )
+    feed_mm_min: float = Field(default=600.0, gt=0.0, description="cutting feed")
+    plunge_mm_min: Annotated[float, Key(options=("--plunge-feed",))] = Field(
+        default=200.0, gt=0.0, description="feed of plunges, ramps and helices"
+    )
+    link_mm_min: Annotated[float | None, Key(options=("--link-feed",), unset="the cutting feed")] = Field(
+        default=None, gt=0.0, description="feed of links along the surface between passes"
+    )
+    lead_mm_min: Annotated[float | None, Key(options=("--lead-feed",), unset="the cutting feed")] = Field(
+        default=None, gt=0.0, description="feed of lead-ins and lead-outs"
+    )
     spindle_rpm: float = Field(default=3600.0, gt=0.0, description="spindle speed")
-    safe_z_mm: float | None = Field(default=None, description="height of rapids; 5 mm above the stock if not given")
-    clearance_mm: float = Field(default=1.0, gt=0.0, description="above material, where rapids end")
-    stay_down_mm: float | None = Field(
-        default=None, ge=0.0, description="longest way between passes along the surface; suits the step if not given"
+    safe_z_mm: Annotated[float | None, Key(unset="5 mm above the stock")] = Field(
+        default=None, description="height of rapids"
     )
-    low_links: bool = Field(default=False, description="rapids at clearance above what is left, where it is known")
-    entry: Literal["plunge", "ramp", "helix"] = Field(default="ramp", description="way into material")
-    ramp_deg: float = Field(default=3.0, gt=0.0, lt=90.0, description="steepest ramp and helix")
-    helix_mm: float | None = Field(default=None, gt=0.0, description="radius of helices; 0.4 of the diameter")
-    lead_mm: float = Field(default=0.0, ge=0.0, description="radius of leads, 0 for none")
-    thin_mm: float = Field(default=0.0002, ge=0.0, description="points this near to a chord are left out; 0 keeps all")
-    arcs_mm: float | None = Field(default=None, gt=0.0, description="tolerance of arcs; none are fitted if not given")
-    gouge_mm: float = Field(default=0.0005, ge=0.0, description="how much of either may lie towards the material")
-    tool_number: int = Field(default=1, ge=1, description="T and H word")
+    clearance_mm: float = Field(default=1.0, gt=0.0, description="height above material where rapids down end")
+    stay_down_mm: Annotated[float | None, Key(unset="3 step-overs or radial depths")] = Field(
+        default=None, ge=0.0, description="longest link along the surface between passes; longer ones retract"
+    )
+    low_links: bool = Field(
+        default=False,
+        description="rapids at clearance above the rest material, where it is known, instead of safe_z_mm",
+    )
+    entry: Literal["plunge", "ramp", "helix"] = Field(default="ramp", description="entry into material")
+    ramp_deg: Annotated[float, Key(options=("--ramp-angle",))] = Field(
+        default=3.0, gt=0.0, lt=90.0, description="steepest angle of ramps and helices"
+    )
+    helix_mm: Annotated[float | None, Key(options=("--helix-radius",), unset="0.4 of the diameter")] = Field(
+        default=None, gt=0.0, description="radius of helices"
+    )
+    lead_mm: float = Field(default=0.0, ge=0.0, description="lead-in/lead-out radius, 0 for none")
+    thin_mm: float = Field(default=0.0002, ge=0.0, description="points within this of a chord are omitted, 0 keeps all")
+    arcs_mm: Annotated[float | None, Key(unset="no arcs")] = Field(
+        default=None, gt=0.0, description="tolerance of fitted arcs"
+    )
+    gouge_mm: float = Field(
+        default=0.0005, ge=0.0, description="largest deviation of omitted points and arcs towards the material"
+    )
+    tool_number: int = Field(default=1, ge=1, description="tool number, for T and H words")
     teeth: int = Field(default=2, ge=1, le=100, description="number of flutes, for the job file")
     coolant: Literal["off", "mist", "flood"] = Field(default="flood", description="coolant")
     dialect: Literal["fanuc", "haas", "linuxcnc", "grbl"] = Field(default="fanuc", description="control")
-    decimals: int = Field(default=4, ge=1, le=6, description="digits after the point of coordinates")
-    program_number: int | None = Field(default=None, ge=1, description="O word, FANUC and Haas")
+    decimals: int = Field(default=4, ge=1, le=6, description="decimal places of coordinates")
+    program_number: Annotated[int | None, Key(unset="none")] = Field(
+        default=None, ge=1, description="program number (O word) for FANUC and Haas"
+    )
 
     @model_validator(mode="after")
     def _consistent(self) -> PathSettings:
@@ -90,33 +117,21 @@ class PathSettings(BaseModel):
         return self
 
 
-def settings_of(values: Mapping[str, Any], source: str) -> PathSettings:
-    """Settings from keys and values.
+class ReachSettings(Table):
+    """Parameters of a reach analysis; lengths in mm."""
 
-    Args:
-        source: file, or what else to name in messages.
-
-    Raises:
-        ToolPathError: every mistake, one line each.
-    """
-    try:
-        return PathSettings.model_validate(values)
-    except ValidationError as error:
-        found = error.errors(include_url=False)
-        texts = [str(p) for p in problems_of([e for e in found if e["loc"]], PathSettings)]
-        texts += [e["msg"].removeprefix("Value error, ") for e in found if not e["loc"]]
-        raise ToolPathError("\n".join(f"{source}: {text}" for text in texts)) from None
-
-
-def read_settings(path: Path) -> dict[str, Any]:
-    """Keys and values of a TOML file; they are checked with all others by `settings_of`.
-
-    Raises:
-        ToolPathError: the file cannot be read, or is no TOML.
-    """
-    try:
-        return tomllib.loads(path.read_text("utf-8"))
-    except OSError as error:
-        raise ToolPathError(f"{path}: cannot be read: {error.strerror}; expected a TOML file") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ToolPathError(f"{path}: no valid TOML: {error}") from error
+    tools: Annotated[
+        tuple[str, ...], Strict(False), Key(options=("--tool",), metavar="TOOL", unset="none, if `largest` is set")
+    ] = Field(default=(), description="tools: 'ball 8', 'flat 10', 'bull 12 r2'")
+    pitch_mm: Annotated[float | None, Key(unset="longest side / 600")] = Field(
+        default=None, gt=0.0, description="largest distance between the part's slices"
+    )
+    thin_mm: Annotated[float | None, Key(unset="what the slices resolve")] = Field(
+        default=None, ge=0.0, description="uncut material thinner than this is ignored"
+    )
+    above: Annotated[bool, Key(options=("--above",))] = Field(
+        default=False, description="ball tools reach the part from above only, not from any side"
+    )
+    largest: Annotated[bool, Key(options=("--largest",))] = Field(
+        default=False, description="find the largest ball that finishes the part"
+    )

@@ -41,3 +41,18 @@ def checked(
         texts = [str(Problem((name(str(p.location[0])), *p.location[1:]), p.text)) for p in problems]
         texts += [e["msg"].removeprefix("Value error, ") for e in found if not e["loc"]]
         raise refuse(source, texts) from None
+
+
+def changed(model: type[_Model], given: _Model | None, values: Mapping[str, Any], source: str) -> _Model:
+    """Settings with some values replaced; settings from the values alone without ``given``.
+
+    Args:
+        source: name for the message.
+
+    Raises:
+        SettingsError: with every mistake.
+    """
+    if given is not None and not values:
+        return given
+    own = {} if given is None else {name: getattr(given, name) for name in given.model_fields_set}
+    return checked(model, {**own, **values}, source)

@@ -60,9 +60,15 @@ def default_text(field: FieldInfo) -> str | None:
     return toml_value(_short(value))
 
 
-def keys_table(model: type[BaseModel]) -> str:
-    """A page's table of a model's keys, in Markdown."""
-    return "\n".join(["| key | default | meaning |", "| --- | --- | --- |", *_rows(model)])
+def keys_table(model: type[BaseModel], without: type[BaseModel] = BaseModel) -> str:
+    """A page's table of a model's keys, in Markdown.
+
+    Args:
+        model: the model.
+        without: a base of the model whose keys are omitted.
+    """
+    rows = [row for row in _rows(model) if row not in set(_rows(without))]
+    return "\n".join(["| key | default | meaning |", "| --- | --- | --- |", *rows])
 
 
 def _rows(model: type[BaseModel]) -> Iterator[str]:

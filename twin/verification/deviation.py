@@ -1,8 +1,8 @@
-"""How far the machined surface stands off the design: gouges, excess, how much of the surface is within tolerance.
+"""Deviation of the machined surface from the design: gouges, excess, and the share of the surface within tolerance.
 
-Signs: positive where material was left, negative where material of the design was removed. Distances are normal ones,
-from points of the machined surface to the design's triangles. What a distance to the nearest surface cannot see, a thin
-rib that is gone altogether, is seen by the rays: they tell how much of the design is missing along them.
+Signs: positive where material was left, negative where material of the design was removed. Distances are normal to the
+design, from points of the machined surface to the design's triangles. A thin rib that is missing altogether cannot be
+detected by a distance to the nearest surface; rays detect it, as they measure how much of the design is missing.
 """
 
 from __future__ import annotations
@@ -18,29 +18,29 @@ from scipy.spatial import cKDTree
 from twin.arrays import FloatArray, frozen
 from twin.geometry.mesh.closest import ClosestPoints
 from twin.tolerance import Tolerance
-from twin.verification.places import Place, places_of
 from twin.verification.rays import Rays, beyond, cast
+from twin.verification.regions import DeviationRegion, regions_out_of_tolerance
 from twin.workpiece.from_mesh import Solid
 from twin.workpiece.trislice import TriSlices
 
-#: Shares of the surface's area that the report tells deviations for.
+#: Shares of the surface's area that percentiles are reported for.
 SHARES = (0.001, 0.01, 0.05, 0.5, 0.95, 0.99, 0.999)
-#: Smallest part of a design's normal along a ray for which the ray's own length tells a normal distance.
+#: Smallest component of a design's normal along a ray for which the length on the ray is used as a distance.
 _FACING = 0.577
-#: A point of the design counts as lost when no machined surface is nearer than tolerance and this many pitches.
+#: A point of the design counts as lost when no machined surface is within the tolerance plus this many pitches.
 _LOST_PITCHES = 1.0
-#: Deviation that rounding of vertices makes, mm.
+#: Deviation caused by rounding of vertices, mm.
 _ROUNDING_MM = 1e-5
-#: Points this near to the stock's box, mm, were never touched when they are flush with the design as well.
+#: Points within this distance of the stock's box, mm, were not machined if they are flush with the design as well.
 _FLUSH_MM = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Limits:
-    """What of the part is judged: a box.
+    """The box of the part that is verified.
 
     Attributes:
-        low_mm, high_mm: corners, shape (3,); infinite where there is no limit.
+        low_mm, high_mm: corners, shape (3,); infinite without a limit.
     """
 
     low_mm: FloatArray
@@ -48,7 +48,7 @@ class Limits:
 
     @classmethod
     def of(cls, design: Solid, region_mm: ArrayLike | None = None) -> Limits:
-        """The design's box in x and y, or a region (x0, y0, x1, y1); upwards from the design's lowest point."""
+        """The design's box in x and y, or a region (x0, y0, x1, y1), from the design's lowest point upwards."""
         low, high = design.vertices_mm.min(axis=0), design.vertices_mm.max(axis=0)
         if region_mm is not None:
             region = frozen(region_mm, "region_mm", (4,))
@@ -57,28 +57,29 @@ class Limits:
         return cls(low_mm=low, high_mm=np.array([high[0], high[1], math.inf]))
 
     def hold(self, points_mm: FloatArray) -> NDArray[np.bool_]:
-        """Whether points lie inside, those on its sides included."""
+        """Whether points lie inside or on the box, shape (n,)."""
         over = (points_mm >= self.low_mm - _FLUSH_MM) & (points_mm <= self.high_mm + _FLUSH_MM)
         return np.asarray(np.all(over, axis=1))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Deviation:
-    """What was machined against the design.
+    """Deviation of the machined surface from the design.
 
     Attributes:
-        points_mm: of the machined surface, shape (n, 3).
-        deviation_mm: shape (n,).
-        area_mm2: of the surface that each stands for, shape (n,).
-        design_points_mm, design_deviation_mm: points of the design and how far the machined surface stands off there,
+        points_mm: points of the machined surface, shape (n, 3).
+        deviation_mm: their deviation, shape (n,).
+        area_mm2: surface area that each point represents, shape (n,).
+        design_points_mm, design_deviation_mm: points of the design and the deviation of the machined surface there,
             shape (m, 3) and (m,).
-        tolerance_mm: allowed gouge; excess_mm: allowed excess.
-        gouged_mm3: volume of gouges, as depth times area; a rib that is gone is not in it, but in ``lost_mm``.
-        left_mm3: volume left over the design.
-        lost_mm: how far the nearest machined surface is from the point of the design that is missing most, 0 for none.
-        resolution_mm: what distances at the points are known to.
-        pitch_mm: largest distance of the rays; what is smaller may stand between them unseen.
-        places: of gouges and excess beyond tolerance, the worst first.
+        tolerance_mm: permitted gouge.
+        excess_mm: permitted excess.
+        gouged_mm3: volume of gouges, as depth times area; a missing rib is not in it, but in ``lost_mm``.
+        left_mm3: volume of material left on the design.
+        lost_mm: largest distance from a missing point of the design to the machined surface, 0 for none.
+        resolution_mm: accuracy of the deviations.
+        pitch_mm: largest distance between rays; smaller details may lie undetected between them.
+        regions: gouges and excess beyond tolerance, the worst first.
     """
 
     points_mm: FloatArray
@@ -93,7 +94,7 @@ class Deviation:
     lost_mm: float
     resolution_mm: float
     pitch_mm: float
-    places: tuple[Place, ...]
+    regions: tuple[DeviationRegion, ...]
 
     @property
     def worst_gouge_mm(self) -> float:
@@ -102,28 +103,28 @@ class Deviation:
 
     @property
     def worst_excess_mm(self) -> float:
-        """Height of what is left most, 0 or more."""
+        """Height of the largest excess, 0 or more."""
         return max(0.0, float(self.deviation_mm.max(initial=0.0)))
 
     @property
     def gouge_ok(self) -> bool:
-        """Whether no gouge is deeper than the tolerance, as far as it can be known."""
+        """Whether no gouge is deeper than tolerance and resolution together."""
         return self.worst_gouge_mm <= self.tolerance_mm + self.resolution_mm
 
     @property
     def excess_ok(self) -> bool:
-        """The same for what is left."""
+        """Whether no excess is higher than its tolerance and the resolution together."""
         return self.worst_excess_mm <= self.excess_mm + self.resolution_mm
 
     @property
     def within(self) -> float:
-        """Share of the machined area within both bounds."""
+        """Share of the machined area within both tolerances."""
         ok = (self.deviation_mm >= -self.tolerance_mm) & (self.deviation_mm <= self.excess_mm)
         total = float(self.area_mm2.sum())
         return float(self.area_mm2[ok].sum()) / total if total else 1.0
 
     def quantiles_mm(self, shares: ArrayLike = SHARES) -> FloatArray:
-        """Deviations that shares of the machined area stay below."""
+        """Deviations that the given shares of the machined area do not exceed, shape as ``shares``."""
         if len(self.deviation_mm) == 0:
             return np.zeros(np.shape(shares))
         order = np.argsort(self.deviation_mm, kind="stable")
@@ -144,12 +145,15 @@ def deviation(
     """Compare a machined workpiece with a design in the same coordinates.
 
     Args:
-        tolerance_mm: depth of a gouge that is still right.
-        excess_mm: height of what may be left, e.g. allowance and scallops; the tolerance if not given.
-        limits: what is judged; the design's box if not given.
+        store: the machined workpiece.
+        design: the design.
+        tolerance_mm: permitted depth of gouges.
+        excess_mm: permitted excess, e.g. allowance and scallops; the tolerance if not given.
+        limits: box that is verified; the design's box if not given.
+        threads: number of threads, None for all cores.
 
     Raises:
-        ValueError: a tolerance that is not above 0.
+        ValueError: a tolerance is not above 0.
     """
     excess = tolerance_mm if excess_mm is None else excess_mm
     if not (tolerance_mm > 0.0 and excess > 0.0):
@@ -174,12 +178,12 @@ def deviation(
         lost_mm=lost,
         resolution_mm=Tolerance.for_pitch(pitch).chord_mm + _ROUNDING_MM,
         pitch_mm=pitch,
-        places=places_of(points, away, area, tolerance_mm, excess, pitch),
+        regions=regions_out_of_tolerance(points, away, area, tolerance_mm, excess, pitch),
     )
 
 
 class _Direction(NamedTuple):
-    """What rays along one axis tell: points of the machined surface, of the design, and the volume left over it."""
+    """Measurements of rays along one axis: points of the machined surface and of the design, and the excess volume."""
 
     points: FloatArray
     away: FloatArray
@@ -208,10 +212,10 @@ def _one_direction(
 def _design_side(
     rays: Rays, tree: ClosestPoints, limits: Limits, threads: int | None
 ) -> tuple[FloatArray, FloatArray, float]:
-    """Points of the design that rays meet squarely, what stands over them, and the volume of that.
+    """Points of the design that rays meet steeply enough, the excess at each of them, and its volume.
 
     The volume is the sum over the three directions of lengths on rays, each weighted by the square of the design's
-    normal along its ray: these squares add up to one, so that every part of the surface counts once.
+    normal along its ray: these squares add up to one, so every part of the surface counts once.
     """
     wanted, _, out = rays.points(rays.design)
     over = beyond(rays) if len(wanted) else np.empty(0)
@@ -226,14 +230,14 @@ def _design_side(
 
 
 def _flush(points: FloatArray, store: TriSlices) -> NDArray[np.bool_]:
-    """Points on the faces of the stock's box."""
+    """Whether points lie on the faces of the stock's box."""
     low = np.abs(points - store.low_mm) <= _FLUSH_MM
     high = np.abs(points - store.high_mm) <= _FLUSH_MM
     return np.asarray(np.any(low | high, axis=1))
 
 
 def _lost(points: FloatArray, wanted: FloatArray, over: FloatArray, least_mm: float) -> float:
-    """Distance of the worst point of the design that is gone from any machined surface."""
+    """Largest distance from a missing point of the design to the machined surface; see `Deviation.lost_mm`."""
     gone = wanted[over < -least_mm]
     if len(gone) == 0:
         return 0.0

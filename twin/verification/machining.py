@@ -1,4 +1,4 @@
-"""A job's material removal alone: no engagement, no forces, no records."""
+"""Material removal of a job alone, without engagement, forces and records."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from twin.simulation.setup import prepare
 from twin.simulation.tools import ToolSetup
 from twin.workpiece.trislice import TriSlices
 
-#: Told of machine time and NC line while the program runs, and of the whole machine time before.
+#: Called with the machine time of the whole program before it runs, and with machine time and NC line while it runs.
 Begin = Callable[[float], None]
 At = Callable[[float, int], None]
 
@@ -25,10 +25,16 @@ At = Callable[[float, int], None]
 def machined(
     job: Job, *, begin: Begin = lambda _t: None, at: At = lambda _t, _n: None, threads: int = 2
 ) -> tuple[TriSlices, tuple[Collision, ...]]:
-    """Cut a job's program out of its stock.
+    """Machine a job's program from its stock.
+
+    Args:
+        job: the job.
+        begin: called once with the machine time of the whole program, s.
+        at: called for every motion with its start time, s, and NC line.
+        threads: number of threads.
 
     Returns:
-        The workpiece afterwards, and what touched it that must not.
+        The machined workpiece and the collisions.
 
     Raises:
         TwinError, GcodeError: a job or program that cannot be replayed.
@@ -53,7 +59,7 @@ def machined(
 
 
 def _cut(material: Material, tool: ToolSetup, move: Move, chord_mm: float, t_s: float) -> Contacts:
-    """Take one motion away; what touched that must not."""
+    """Remove the material of one motion and return its forbidden contacts."""
     contacts = Contacts()
     for start, end in pairwise(move.corners_mm(math.inf, chord_mm)):
         contacts.add(material.cut(tool, start, end, forbidden(move)), t_s, start)

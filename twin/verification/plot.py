@@ -1,4 +1,4 @@
-"""Deviations as a picture: the surface seen from above, and how much of it deviates by how much."""
+"""Deviations as a picture: a map from above, and a histogram of the machined area."""
 
 from __future__ import annotations
 
@@ -16,10 +16,12 @@ _UM = 1000.0
 
 
 def plot_deviation(found: Deviation, out: Path, title: str = "") -> None:
-    """Draw deviations, in um, red where material is gone and blue where it is left.
+    """Draw deviations in um, red for gouges and blue for excess.
 
     Args:
-        out: picture to write, its kind by its ending.
+        found: the deviations.
+        out: picture to write; its suffix determines the format.
+        title: title of the map.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -44,10 +46,10 @@ def plot_deviation(found: Deviation, out: Path, title: str = "") -> None:
         linewidths=0,
         rasterized=True,
     )
-    figure.colorbar(drawn, ax=plan, label="deviation, µm (− gouge, + left)", extend="both")
+    figure.colorbar(drawn, ax=plan, label="deviation, µm (− gouge, + excess)", extend="both")
     plan.set(aspect="equal", xlabel="x, mm", ylabel="y, mm", title=title, facecolor="0.93")
-    for place in found.places[:12]:
-        x, y, _ = place.point_mm
+    for region in found.regions[:12]:
+        x, y, _ = region.point_mm
         plan.plot(x, y, "kx", markersize=5, markeredgewidth=0.8)
     _spread(spread, found, end)
     figure.savefig(out, dpi=150)
@@ -60,4 +62,4 @@ def _spread(axes: Axes, found: Deviation, end: float) -> None:
     axes.hist(inside, bins=bins.tolist(), weights=share, color="#4a7db5", log=True)
     for at in (-found.tolerance_mm * _UM, found.excess_mm * _UM):
         axes.axvline(at, color="#b2182b", linewidth=1.0, linestyle="--")
-    axes.set(xlabel="deviation, µm (ends: beyond)", ylabel="share of the machined area, %")
+    axes.set(xlabel="deviation, µm (outer bins: beyond)", ylabel="share of the machined area, %")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +14,13 @@ from twin.cam.path.to_nc import NcOptions, Operation, write_nc
 from twin.cam.path.toolpath import MoveKind, ToolPath
 from twin.cam.slices.sections import slice_part
 from twin.cam.surface.drop_cutter import DropCutter
-from twin.errors import StockError, ToolError, ToolPathError
+from twin.errors import SettingsError, StockError, ToolError, ToolPathError
 from twin.job import load_job
 from twin.planning.accuracy import pitch_bound_mm, sag_mm
 from twin.planning.paths import PlanSetup, plan, prepare
 from twin.planning.replay_job import replay_tables, write_replay_job
-from twin.planning.settings import PathSettings, read_settings, settings_of
+from twin.planning.settings import PathSettings
+from twin.settings.check import checked
 from twin.tools.text import parse_tool
 from twin.verification.deviation import Deviation, Limits, deviation
 from twin.verification.machining import machined
@@ -39,7 +39,7 @@ SLOPE = [
 
 
 def made(part: Solid, **values: Any) -> tuple[ToolPath, PlanSetup]:
-    settings = settings_of({"tool": "ball 4", "pitch_mm": 0.2, **values}, "test")
+    settings = checked(PathSettings, {"tool": "ball 4", "pitch_mm": 0.2, **values}, "test")
     setup = prepare(settings, slice_part(part, settings.pitch_mm))
     return plan(settings, setup), setup
 
@@ -108,7 +108,7 @@ def test_rows_beside_a_drafted_wall_are_as_good_as_their_bound(exact: bool) -> N
     assert free.any(axis=0).all()
     # how far the tip must go away from the wall to be free
     off = float(aside[np.argmax(free, axis=0)].max())
-    bound = pitch_bound_mm(settings_of({"tool": "ball 4", "pitch_mm": 0.2, **values}, "test"), setup)
+    bound = pitch_bound_mm(checked(PathSettings, {"tool": "ball 4", "pitch_mm": 0.2, **values}, "test"), setup)
     assert off <= bound <= (0.0 if exact else 0.03)
 
 
@@ -249,7 +249,10 @@ def test_settings_that_do_not_fit_are_refused(values: dict[str, Any], error: typ
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"stepover_mm": 0.0}, r"a.toml: stepover_mm = 0.0: expected a number above 0 \(scan: distance of the rows\)"),
+        (
+            {"stepover_mm": 0.0},
+            r"a.toml: stepover_mm = 0.0: expected a number above 0 \(scan: step-over, the distance between rows\)",
+        ),
         ({"allowance_mm": -1.0}, r"allowance_mm = -1.0: expected a number at least 0"),
         ({"stepovr_mm": 1.0}, "stepovr_mm: unknown key; did you mean stepover_mm"),
         ({"region_mm": [0, 0, 1]}, "region_mm = .* expected a list of four numbers"),
@@ -261,23 +264,11 @@ def test_settings_that_do_not_fit_are_refused(values: dict[str, Any], error: typ
     ],
 )
 def test_mistakes_in_settings_name_key_value_and_what_is_allowed(values: dict[str, Any], message: str) -> None:
-    with pytest.raises(ToolPathError, match=message):
-        settings_of({"strategy": "scan", "tool": "ball 8", **values}, "a.toml")
+    with pytest.raises(SettingsError, match=message):
+        checked(PathSettings, {"strategy": "scan", "tool": "ball 8", **values}, "a.toml")
 
 
-def test_settings_come_from_a_file(tmp_path: Path) -> None:
-    file = tmp_path / "s.toml"
-    file.write_text('tool = "ball 8"\nstepover_mm = 0.25\nzigzag = false\nregion_mm = [0, 0, 10, 5]\n')
-    settings = settings_of({**read_settings(file), "strategy": "scan"}, str(file))
-    assert settings.stepover_mm == 0.25 and not settings.zigzag and settings.region_mm == (0.0, 0.0, 10.0, 5.0)
-    with pytest.raises(ToolPathError, match="no valid TOML"):
-        file.write_text("tool = ")
-        read_settings(file)
-    with pytest.raises(ToolPathError, match="cannot be read"):
-        read_settings(tmp_path / "none.toml")
-
-
-def test_what_is_left_tells_where_rapids_end() -> None:
+def test_rest_material_determines_where_rapids_end() -> None:
     values = {"strategy": "scan", "stepover_mm": 2.0, "zigzag": False, "climb": False, "region_mm": (4, 1, 12, 5)}
     whole, setup = made(prism(SLOPE, 0.0, 6.0), **values)
     known, _ = made(prism(SLOPE, 0.0, 6.0), **values, remaining_mm=0.3)
@@ -285,22 +276,6 @@ def test_what_is_left_tells_where_rapids_end() -> None:
     assert min(downs[0]) >= float(setup.stock_mm[1, 2])
     # one row begins over the floor and has 0.3 mm over it, and the clearance of 1 mm over that
     assert min(downs[1]) == pytest.approx(1.3, abs=0.1)
-
-
-def test_the_page_has_every_setting() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "paths.md").read_text()
-    rows = re.findall(r"^\| `(\w+)` \| ?(?:`([^`]*)`)? ?\| (.*) \|$", page, flags=re.M)
-    wanted = [
-        (
-            key,
-            ""
-            if field.is_required() or field.default is None
-            else str(field.default).replace("True", "true").replace("False", "false"),
-            field.description,
-        )
-        for key, field in PathSettings.model_fields.items()
-    ]
-    assert rows == wanted
 
 
 def test_the_bound_of_a_pitch_is_that_of_the_slope() -> None:

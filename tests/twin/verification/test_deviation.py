@@ -34,7 +34,7 @@ def compare(machined: Solid, design: Solid, pitch: float = 0.2, **options: objec
 def test_a_part_against_itself_is_right_everywhere() -> None:
     found = compare(step(3.0), step(3.0))
     assert found.worst_gouge_mm <= ROUNDING and found.worst_excess_mm <= ROUNDING
-    assert found.within == 1.0 and found.places == () and found.gouge_ok and found.excess_ok
+    assert found.within == 1.0 and found.regions == () and found.gouge_ok and found.excess_ok
     assert found.gouged_mm3 == pytest.approx(0.0, abs=1e-4) and found.left_mm3 == pytest.approx(0.0, abs=1e-4)
 
 
@@ -49,20 +49,20 @@ def test_distances_are_normal_to_the_design(lift: float) -> None:
     assert worst == pytest.approx(abs(lift), abs=1e-4)
     volume = found.left_mm3 if lift > 0.0 else found.gouged_mm3
     assert volume == pytest.approx(abs(lift) * area, rel=0.03)
-    assert found.places[0].kind == ("excess" if lift > 0.0 else "gouge")
+    assert found.regions[0].kind == ("excess" if lift > 0.0 else "gouge")
 
 
 def test_the_step_that_is_too_high_or_too_low() -> None:
     low, high = compare(step(2.9), step(3.0)), compare(step(3.04), step(3.0))
     assert low.worst_gouge_mm == pytest.approx(0.1, abs=ROUNDING) and not low.gouge_ok and low.excess_ok
     assert high.worst_excess_mm == pytest.approx(0.04, abs=ROUNDING) and not high.excess_ok and high.gouge_ok
-    (place,) = high.places
-    assert place.volume_mm3 == pytest.approx(5.0 * 6.0 * 0.04, rel=0.02)
-    assert place.low_mm[2] == pytest.approx(3.04, abs=ROUNDING) and place.high_mm[0] <= 5.0
+    (region,) = high.regions
+    assert region.volume_mm3 == pytest.approx(5.0 * 6.0 * 0.04, rel=0.02)
+    assert region.low_mm[2] == pytest.approx(3.04, abs=ROUNDING) and region.high_mm[0] <= 5.0
     assert compare(step(3.04), step(3.0), excess_mm=0.05).excess_ok
 
 
-def test_a_rib_that_is_gone_is_a_gouge_as_high_as_the_rib() -> None:
+def test_a_missing_rib_is_a_gouge_as_high_as_the_rib() -> None:
     rib = prism([(0, -2), (10, -2), (10, 0), (5.1, 0), (5.1, 3), (4.9, 3), (4.9, 0), (0, 0)], 0.0, 6.0)
     found = compare(box((0, 0, -2), (10, 6, 0)), rib)
     # the surface that is there lies within half the rib's width of the design
@@ -79,23 +79,23 @@ def test_only_the_region_is_judged() -> None:
     assert found.excess_ok and found.left_mm3 == pytest.approx(0.0, abs=1e-4)
 
 
-def test_flush_faces_of_the_stock_are_no_machined_area() -> None:
+def test_flush_faces_of_the_stock_are_not_machined_area() -> None:
     found = compare(step(3.0), step(3.0))
     assert found.area_mm2.sum() == pytest.approx(5.0 * 6.0 + 3.0 * 6.0, rel=0.03)
 
 
-def test_two_places_are_told_apart_and_sorted() -> None:
+def test_two_regions_are_kept_apart_and_sorted() -> None:
     plate = prism_corners([(0, -1), (20, -1), (20, 0), (0, 0)], 0.0, 6.0)
     bumps = [
         prism_corners([(x, -0.5), (x + 2, -0.5), (x + 2, h), (x, h)], 2.0, 4.0) for x, h in ((3.0, 0.1), (14.0, 0.3))
     ]
     found = compare(solid(np.concatenate((plate, *bumps)), "bumps"), solid(plate, "plate"))
-    tops = [p for p in found.places if p.worst_mm > 0.05]
+    tops = [p for p in found.regions if p.worst_mm > 0.05]
     assert [round(p.worst_mm, 4) for p in tops] == [0.3, 0.1]
     assert tops[0].low_mm[0] >= 14.0 - 1e-6 and tops[1].high_mm[0] <= 5.0 + 1e-6
 
 
-def test_rays_tell_what_is_missing_and_what_stands_over() -> None:
+def test_rays_measure_missing_and_excess_material() -> None:
     store = CellSlices(mesh_slices(step(2.5), 0.5))
     _, _, up = cast(store, step(3.0))
     points, _, out = up.points(up.design)

@@ -27,13 +27,13 @@ def test_removal_alone_leaves_what_a_replay_leaves(tmp_path: Path) -> None:
     assert collisions == ()
 
 
-def test_a_rapid_through_the_stock_is_told(tmp_path: Path) -> None:
+def test_a_rapid_through_the_stock_is_reported(tmp_path: Path) -> None:
     job = load_job(job_folder(tmp_path, stock__box_mm=BOX))
     (tmp_path / "slot.nc").write_text("T1 M6\nS3600 M3\nG0 X-6 Y8 Z-2\nX30\nM30\n")
-    told: list[float] = []
-    _, collisions = machined(job, begin=told.append)
+    times: list[float] = []
+    _, collisions = machined(job, begin=times.append)
     assert [c.kind for c in collisions] == ["rapid"] and collisions[0].nc_line == 4
-    assert told[0] > 0.0
+    assert times[0] > 0.0
 
 
 def test_a_tool_that_is_not_in_the_job_is_refused(tmp_path: Path) -> None:

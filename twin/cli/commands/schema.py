@@ -3,12 +3,38 @@
 from __future__ import annotations
 
 import json
+from typing import Annotated, Any, Literal, TypeAlias
+
+import typer
+from pydantic import BaseModel
+
+File: TypeAlias = Literal["job", "mold", "paths", "reach", "verify"]
 
 
-def schema() -> None:
-    """Print the JSON Schema of the job file, for editors that complete and check TOML."""
-    import typer
+def schema(
+    file: Annotated[
+        File, typer.Argument(help="File to describe: a job, a mold job, or the settings of a command.")
+    ] = "job",
+) -> None:
+    """Print the JSON Schema of a job file or settings file, for editors that complete and check TOML."""
+    typer.echo(json.dumps(_schema(file), indent=2, ensure_ascii=False))
 
-    from twin.job import job_schema
 
-    typer.echo(json.dumps(job_schema(), indent=2, ensure_ascii=False))
+def _schema(file: File) -> dict[str, Any]:
+    from twin.moldmaking.model import MoldFile
+    from twin.planning.settings import PathSettings, ReachSettings
+    from twin.settings.schema import toml_schema
+    from twin.verification.settings import VerifySettings
+
+    if file == "job":
+        from twin.job import job_schema
+
+        return job_schema()
+    models: dict[str, type[BaseModel]] = {
+        "mold": MoldFile,
+        "paths": PathSettings,
+        "reach": ReachSettings,
+        "verify": VerifySettings,
+    }
+    title = "Mold job of a machining twin" if file == "mold" else f"Settings of twin {file}"
+    return toml_schema(models[file], title)

@@ -1,7 +1,8 @@
-"""Picture of what tools cannot reach: seen from above, and a cut through the thickest place."""
+"""Picture of the material that tools cannot reach: a plan view, and a section through its thickest point."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,21 +30,21 @@ _COLORS = ("#e24228", "#e0901c", "#2f74d0", "#2f9e55", "#9b4fc0")
 _LINES = 12
 
 
-def write_plot(path: Path, sliced: SlicedPart, reaches: dict[str, Reach]) -> None:
-    """Draw and write a PNG file, whole or not at all."""
+def write_plot(path: Path, sliced: SlicedPart, reaches: Mapping[str, Reach]) -> None:
+    """Draw a picture and write it completely or not at all; its suffix determines the format."""
     figure = Figure(figsize=(12.0, 5.6), layout="constrained", dpi=110)
     left, right = figure.subplots(1, 2)
     _draw_above(left, sliced, reaches)
     _draw_cut(right, sliced, reaches)
     partial = path.with_name(f"{path.name}.partial")
     try:
-        figure.savefig(partial, format="png")
+        figure.savefig(partial, format=path.suffix[1:].lower())
         partial.replace(path)
     finally:
         partial.unlink(missing_ok=True)
 
 
-def _draw_above(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None:
+def _draw_above(axes: Axes, sliced: SlicedPart, reaches: Mapping[str, Reach]) -> None:
     planes = sliced.slices.regions[2]
     for k in np.unique(np.linspace(0, len(planes) - 1, _LINES).astype(int)):
         lines = [np.concatenate((ring, ring[:1])) for ring in planes[k].rings]
@@ -51,22 +52,22 @@ def _draw_above(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> No
     for number, (text, reach) in enumerate(reaches.items()):
         color = _COLORS[number % len(_COLORS)]
         label = f"{text}: {reach.volume_mm3:.4g} mm³, {reach.thickness_mm:.3f} mm"
-        axes.plot([], [], color=color, linewidth=5.0, label=label if reach.uncut_regions else f"{text}: nothing stays")
+        axes.plot([], [], color=color, linewidth=5.0, label=label if reach.uncut_regions else f"{text}: none")
         for region in reach.uncut_regions:
             if region.axis == 2:
                 _fill(axes, united(region.pieces), color)
     low, high = sliced.slices.low_mm, sliced.slices.high_mm
     _frame(axes, low[:2], high[:2], "X, mm", "Y, mm")
-    axes.set_title("What tools cannot reach, from above")
+    axes.set_title("Uncut material, plan view")
     if reaches:
         axes.legend(loc="lower center", fontsize=8, framealpha=0.9)
 
 
-def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None:
+def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: Mapping[str, Reach]) -> None:
     regions = [r for reach in reaches.values() for r in reach.uncut_regions]
     if not regions:
         axes.set_axis_off()
-        axes.text(0.5, 0.5, "Nothing stays.", ha="center", va="center", transform=axes.transAxes)
+        axes.text(0.5, 0.5, "No uncut material.", ha="center", va="center", transform=axes.transAxes)
         return
     deepest = max(regions, key=lambda r: r.thickness_mm)
     aside = np.abs(deepest.deepest_mm - deepest.centroid_mm)[:2]
@@ -81,11 +82,11 @@ def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: dict[str, Reach]) -> None
     reach_mm = max(8.0 * deepest.thickness_mm, 0.75 * float(np.ptp([deepest.low_mm[2], deepest.high_mm[2]])))
     middle = deepest.deepest_mm[[u, v]]
     _frame(axes, middle - reach_mm, middle + reach_mm, f"{_AXES[u]}, mm", "Z, mm")
-    axes.set_title(f"Cut at {_AXES[axis]} {plane:.2f}, through the thickest place ({deepest.thickness_mm:.3f} mm)")
+    axes.set_title(f"Section at {_AXES[axis]} {plane:.2f}, through the thickest point ({deepest.thickness_mm:.3f} mm)")
 
 
 def _cut_boxes(region: UncutRegion, axis: int, plane: float) -> list[FloatArray]:
-    """Where a plane across x or y cuts a region's slices, as rectangles."""
+    """Rectangles in which a plane across x or y cuts a region's slices."""
     if region.axis != 2:
         return []
     boxes = []

@@ -1,69 +1,62 @@
-"""What ``twin reach`` tells, for people and as JSON."""
+"""Report of ``twin reach``: human-readable tables, or one JSON object."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from rich.table import Table
+from rich import box
+from rich.table import Table
+from rich.text import Text
 
+from twin.cli.console import results
+from twin.cli.show.words import plural
+
+if TYPE_CHECKING:
     from twin.arrays import FloatArray
     from twin.cam.reach.reach import Reach
     from twin.cam.reach.uncut_regions import UncutRegion
-    from twin.cam.slices.sections import SlicedPart
+    from twin.planning.part_reach import PartReach
 
-#: Regions told of each tool; the object of --json has all.
+#: Regions in the table of each tool; the object of --json has all.
 _MOST_REGIONS = 12
 
 
-def print_report(
-    part: Path, sliced: SlicedPart, reaches: dict[str, Reach], *, searched: bool, ball_mm: float | None
-) -> None:
-    """Tables on standard output."""
-    from rich.text import Text
-
-    from twin.cli.console import results
-    from twin.cli.show.words import plural
-
-    console = results()
-    low, high = sliced.slices.low_mm, sliced.slices.high_mm
-    size = " x ".join(f"{s:.5g}" for s in high - low)
-    pitch = float(sliced.slices.pitch_mm.max())
-    console.print(
-        Text(f"{part}: {size} mm, {len(sliced.mesh.triangles)} triangles, slices {pitch:.4g} mm apart"), soft_wrap=True
-    )
-    if reaches:
+def print_reach(part: Path, found: PartReach) -> None:
+    """Print tables of tools and of uncut regions."""
+    console, slices = results(), found.part.slices
+    size = " x ".join(f"{s:.5g}" for s in slices.high_mm - slices.low_mm)
+    triangles, pitch = len(found.part.mesh.triangles), float(slices.pitch_mm.max())
+    console.print(Text(f"{part}: {size} mm, {triangles} triangles, slices {pitch:.4g} mm apart"), soft_wrap=True)
+    if found.tools:
         console.print()
-        console.print(_tools_table(reaches))
-    for text, reach in reaches.items():
+        console.print(_tools_table(found.tools))
+    for text, reach in found.tools.items():
         if reach.uncut_regions:
             console.print()
             console.print(Text(f"{text}: {plural(len(reach.uncut_regions), 'region')}", style="bold"))
             console.print(_regions_table(reach.uncut_regions[:_MOST_REGIONS]))
-    if searched:
+    if found.settings.largest:
         console.print()
-        console.print(Text(_ball_text(ball_mm)))
+        console.print(Text(_ball_text(found.largest_ball_mm)))
 
 
-def _ball_text(ball_mm: float | None) -> str:
-    if ball_mm is None:
-        return "No ball that slices this far apart can tell finishes the part: there are sharp inner edges."
-    return f"Largest ball that finishes the part: diameter {2.0 * ball_mm:.3g} mm."
+def _ball_text(diameter_mm: float | None) -> str:
+    if diameter_mm is None:
+        return "No ball that slices at this pitch can resolve finishes the part: there are sharp inner edges."
+    return f"Largest ball that finishes the part: diameter {diameter_mm:.3g} mm."
 
 
-def _tools_table(reaches: dict[str, Reach]) -> Table:
-    from rich import box
-    from rich.table import Table
-
+def _tools_table(reaches: Mapping[str, Reach]) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for head in ("tool", "from", "stays, mm³", "thickest, mm", "regions", "counted from, mm"):
+    for head in ("tool", "from", "uncut, mm³", "thickest, mm", "regions", "ignored below, mm"):
         table.add_column(head, justify="left" if head in ("tool", "from") else "right", no_wrap=True)
     for text, reach in reaches.items():
         side = "any side" if reach.element.centred else "above"
         if not reach.uncut_regions:
-            table.add_row(text, side, "nothing", "", "", f"{reach.thin_mm:.3f}")
+            table.add_row(text, side, "none", "", "", f"{reach.thin_mm:.3f}")
             continue
         numbers = (f"{reach.volume_mm3:.4g}", f"{reach.thickness_mm:.3f}", str(len(reach.uncut_regions)))
         table.add_row(text, side, *numbers, f"{reach.thin_mm:.3f}")
@@ -71,30 +64,25 @@ def _tools_table(reaches: dict[str, Reach]) -> Table:
 
 
 def _regions_table(regions: tuple[UncutRegion, ...]) -> Table:
-    from rich import box
-    from rich.table import Table
-
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for head in ("stays, mm³", "thickest, mm", "at x, y, z", "X", "Y", "Z"):
+    for head in ("uncut, mm³", "thickest, mm", "at x, y, z", "X", "Y", "Z"):
         table.add_column(head, justify="right", no_wrap=True)
     for region in regions:
         spans = (f"{a:.2f} to {b:.2f}" for a, b in zip(region.low_mm, region.high_mm, strict=True))
-        place = ", ".join(f"{c:.2f}" for c in region.deepest_mm)
-        table.add_row(f"{region.volume_mm3:.4g}", f"{region.thickness_mm:.3f}", place, *spans)
+        deepest = ", ".join(f"{c:.2f}" for c in region.deepest_mm)
+        table.add_row(f"{region.volume_mm3:.4g}", f"{region.thickness_mm:.3f}", deepest, *spans)
     return table
 
 
-def json_text(
-    part: Path, sliced: SlicedPart, reaches: dict[str, Reach], *, searched: bool, ball_mm: float | None
-) -> str:
-    """One JSON object."""
+def reach_json(part: Path, found: PartReach) -> str:
+    """The object of ``--json``."""
     made: dict[str, Any] = {
         "part": str(part),
-        "pitch_mm": sliced.slices.pitch_mm.tolist(),
-        "tools": [_tool(text, reach) for text, reach in reaches.items()],
+        "pitch_mm": found.part.slices.pitch_mm.tolist(),
+        "tools": [_tool(text, reach) for text, reach in found.tools.items()],
     }
-    if searched:
-        made["largest_ball_diameter_mm"] = None if ball_mm is None else 2.0 * ball_mm
+    if found.settings.largest:
+        made["largest_ball_diameter_mm"] = found.largest_ball_mm
     return json.dumps(made, indent=2, ensure_ascii=False)
 
 

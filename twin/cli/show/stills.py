@@ -1,4 +1,4 @@
-"""Scenes for the viewer: tool paths over their part, what tools cannot reach, and deviations."""
+"""Scenes for the viewer: tool paths over their part, uncut material, and deviations."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from twin.arrays import FloatArray
 from twin.cam.path.toolpath import MoveKind, ToolPath
 from twin.cam.reach.reach import Reach
 from twin.cam.reach.uncut_mesh import uncut_mesh
+from twin.planning.part_reach import PartReach, tool_name
 from twin.sinks.rerun.still import Colors, Still, StillLines, StillMesh, StillPoints
 from twin.verification.deviation import Deviation
 from twin.workpiece.from_mesh import Solid
@@ -26,19 +27,20 @@ _COLORS: dict[MoveKind, tuple[int, int, int]] = {
     MoveKind.RETRACT: (150, 150, 160),
 }
 _PART = (170, 176, 184)
-#: Colours of what tools leave, in their order.
+#: Colours of uncut material, by tool.
 _TOOL_COLORS = ((226, 66, 40), (240, 168, 40), (60, 132, 226), (58, 176, 92), (166, 84, 196))
-#: Places that are named in the scene.
+#: Number of regions with a label in the scene.
 _NAMED = 12
-#: Colours from gouge over right to excess.
+#: Colours from gouge through zero to excess.
 _MAP = np.array([(178, 24, 43), (239, 138, 98), (235, 235, 235), (103, 169, 207), (33, 102, 172)], dtype=np.float64)
 
 
 def paths_still(paths: Mapping[str, ToolPath], part: Solid) -> Still:
-    """Paths over their part, lines coloured by the kind of their moves.
+    """Paths over their part, coloured by kind of move.
 
     Args:
-        paths: by the names of their entities.
+        paths: paths by the names of their entities.
+        part: the part.
     """
     lines = [
         StillLines(
@@ -55,24 +57,21 @@ def paths_still(paths: Mapping[str, ToolPath], part: Solid) -> Still:
     return Still(name=f"{Path(part.name).name}: tool paths", meshes=[_mesh(part)], lines=lines, text=text)
 
 
-def reaches_still(reaches: Mapping[str, Reach], part: Solid) -> Still:
-    """What tools cannot reach on a part, and where it is thickest.
-
-    Args:
-        reaches: by the texts of their tools.
-    """
+def reach_still(found: PartReach) -> Still:
+    """Uncut material on a part, with its thickest points."""
+    reaches, part = found.tools, found.part.mesh
     colors = {text: _TOOL_COLORS[k % len(_TOOL_COLORS)] for k, text in enumerate(reaches)}
     left = {text: reach for text, reach in reaches.items() if reach.uncut_regions}
     meshes = [_mesh(part)]
     for text, reach in left.items():
         made = uncut_mesh(reach.uncut_regions)
-        entity = f"leftover/{entity_name(text)}"
+        entity = f"uncut/{tool_name(text)}"
         meshes.append(
             StillMesh(entity=entity, vertices_mm=made.vertices_mm, triangles=made.triangles, color=colors[text])
         )
     points = [
         StillPoints(
-            entity=f"thickest/{entity_name(text)}",
+            entity=f"thickest/{tool_name(text)}",
             points_mm=np.array([r.deepest_mm for r in reach.uncut_regions[:_NAMED]]),
             colors=np.array([colors[text]] * min(_NAMED, len(reach.uncut_regions)), dtype=np.uint8),
             radius_mm=reach.pitch_mm,
@@ -80,37 +79,32 @@ def reaches_still(reaches: Mapping[str, Reach], part: Solid) -> Still:
         )
         for text, reach in left.items()
     ]
-    title = f"{Path(part.name).name}: what tools cannot reach"
+    title = f"{Path(part.name).name}: uncut material"
     return Still(name=title, meshes=meshes, points=points, text=f"# {title}\n\n{_reach_table(reaches)}")
 
 
-def entity_name(text: str) -> str:
-    """A tool's text as part of the name of an entity or a file."""
-    return "_".join(text.split()).replace(".", "p")
-
-
 def _reach_table(reaches: Mapping[str, Reach]) -> str:
-    """Markdown."""
+    """Table of tools, Markdown."""
     rows = [
         f"| {text} | {reach.volume_mm3:.4g} | {reach.thickness_mm:.3f} | {len(reach.uncut_regions)} |"
         if reach.uncut_regions
-        else f"| {text} | nothing | | |"
+        else f"| {text} | none | | |"
         for text, reach in reaches.items()
     ]
-    return "\n".join(("| tool | stays, mm³ | thickest, mm | regions |", "| --- | --- | --- | --- |", *rows))
+    return "\n".join(("| tool | uncut, mm³ | thickest, mm | regions |", "| --- | --- | --- | --- |", *rows))
 
 
 def deviation_still(found: Deviation, part: Solid, title: str) -> Still:
-    """Points of the machined surface coloured by deviation, the part, and the places out of tolerance by name."""
+    """Points of the machined surface coloured by deviation, the part, and labels of the regions out of tolerance."""
     text = "\n".join(
         (
             f"# {title}",
             "",
             f"- deepest gouge {1000.0 * found.worst_gouge_mm:.1f} µm, allowed {1000.0 * found.tolerance_mm:g}",
             f"- largest excess {1000.0 * found.worst_excess_mm:.1f} µm, allowed {1000.0 * found.excess_mm:g}",
-            f"- {100.0 * found.within:.2f} % of the machined area within both",
-            f"- rays {found.pitch_mm:.3g} mm apart, distances known to {1000.0 * found.resolution_mm:.1f} µm",
-            "- red: gone, white: right, blue: left; full at twice the larger bound",
+            f"- {100.0 * found.within:.2f} % of the machined area within tolerance",
+            f"- rays {found.pitch_mm:.3g} mm apart, deviations accurate to {1000.0 * found.resolution_mm:.1f} µm",
+            "- red: gouge, white: on size, blue: excess; full colour at twice the larger tolerance",
         )
     )
     points = StillPoints(
@@ -119,9 +113,9 @@ def deviation_still(found: Deviation, part: Solid, title: str) -> Still:
         colors=deviation_colors(found.deviation_mm, max(found.tolerance_mm, found.excess_mm)),
         radius_mm=0.5 * found.pitch_mm,
     )
-    worst = found.places[:_NAMED]
+    worst = found.regions[:_NAMED]
     named = StillPoints(
-        entity="places",
+        entity="out_of_tolerance",
         points_mm=np.array([p.point_mm for p in worst]).reshape(-1, 3),
         colors=np.tile(np.array((250, 210, 60), dtype=np.uint8), (len(worst), 1)),
         radius_mm=2.0 * found.pitch_mm,
@@ -131,7 +125,7 @@ def deviation_still(found: Deviation, part: Solid, title: str) -> Still:
 
 
 def deviation_colors(deviation_mm: FloatArray, end_mm: float) -> Colors:
-    """Red for what is gone, white for what is right, blue for what is left; full at twice the tolerance."""
+    """Red for gouges, white for zero, blue for excess; full colour at twice the tolerance."""
     at = np.clip(deviation_mm / (2.0 * end_mm), -1.0, 1.0) * 2.0 + 2.0
     low = np.minimum(at.astype(np.int64), 3)
     part = (at - low)[:, None]

@@ -1,4 +1,4 @@
-"""Where gouges and excess are: connected places, each with its extent, worst point and volume."""
+"""Regions out of tolerance: connected gouges and excess, each with its box, worst point and volume."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from scipy import ndimage
 from twin.arrays import FloatArray
 
 Kind: TypeAlias = Literal["gouge", "excess"]
-#: Points belong together when they lie in neighbouring cells of so many pitches.
+#: Points belong to one region when they lie in neighbouring cells of this many pitches.
 _CELL_PITCHES = 3.0
-#: Most cells of the grid that places are found in.
+#: Largest number of cells of the grid that regions are found on.
 _MOST_CELLS = 30_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Place:
+class DeviationRegion:
     """A connected part of the machined surface that is out of tolerance.
 
     Attributes:
         kind: ``gouge`` or ``excess``.
         worst_mm: largest depth or height.
-        point_mm: where that is, shape (3,).
-        low_mm, high_mm: the place's box, shape (3,).
-        area_mm2: its area.
-        volume_mm3: between it and the design, as depth times area.
+        point_mm: its position, shape (3,).
+        low_mm, high_mm: corners of the region's box, shape (3,).
+        area_mm2: the region's area.
+        volume_mm3: volume between the region and the design, as depth times area.
     """
 
     kind: Kind
@@ -40,23 +40,23 @@ class Place:
     volume_mm3: float
 
 
-def places_of(
+def regions_out_of_tolerance(
     points_mm: FloatArray,
     deviation_mm: FloatArray,
     area_mm2: FloatArray,
     gouge_mm: float,
     excess_mm: float,
     pitch_mm: float,
-) -> tuple[Place, ...]:
-    """All places out of tolerance: gouges first, then by their worst point.
+) -> tuple[DeviationRegion, ...]:
+    """All regions out of tolerance, gouges first, each kind by its worst point.
 
     Args:
-        points_mm: shape (n, 3).
-        deviation_mm, area_mm2: shape (n,).
-        gouge_mm, excess_mm: what is allowed.
+        points_mm: points of the machined surface, shape (n, 3).
+        deviation_mm, area_mm2: deviation and area of each point, shape (n,).
+        gouge_mm, excess_mm: tolerances of the two kinds.
         pitch_mm: distance of the points.
     """
-    found: list[Place] = []
+    found: list[DeviationRegion] = []
     kinds: tuple[tuple[Kind, FloatArray, float], ...] = (
         ("gouge", -deviation_mm, gouge_mm),
         ("excess", deviation_mm, excess_mm),
@@ -65,16 +65,16 @@ def places_of(
         out = depth > most
         groups = _groups(points_mm[out], _CELL_PITCHES * pitch_mm)
         here = [
-            _place(kind, points_mm[out][groups == g], depth[out][groups == g], area_mm2[out][groups == g])
+            _region(kind, points_mm[out][groups == g], depth[out][groups == g], area_mm2[out][groups == g])
             for g in range(int(groups.max(initial=-1)) + 1)
         ]
-        found += sorted(here, key=lambda place: -place.worst_mm)
+        found += sorted(here, key=lambda region: -region.worst_mm)
     return tuple(found)
 
 
-def _place(kind: Kind, points: FloatArray, depth: FloatArray, area: FloatArray) -> Place:
+def _region(kind: Kind, points: FloatArray, depth: FloatArray, area: FloatArray) -> DeviationRegion:
     worst = int(np.argmax(depth))
-    return Place(
+    return DeviationRegion(
         kind=kind,
         worst_mm=float(depth[worst]),
         point_mm=points[worst],
@@ -86,7 +86,7 @@ def _place(kind: Kind, points: FloatArray, depth: FloatArray, area: FloatArray) 
 
 
 def _groups(points: FloatArray, cell_mm: float) -> NDArray[np.int64]:
-    """The number of the place that each point belongs to, from 0."""
+    """Number of the region that each point belongs to, from 0."""
     if len(points) == 0:
         return np.empty(0, dtype=np.int64)
     low, extent = points.min(axis=0), np.ptp(points, axis=0)

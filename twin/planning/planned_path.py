@@ -1,0 +1,143 @@
+"""A planned tool path with everything needed to write its NC program and the job file that replays it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from twin.cam.path.to_nc import NcOptions, Operation, describe, write_nc
+from twin.cam.path.toolpath import ToolPath
+from twin.cam.slices.sections import SlicedPart
+from twin.errors import ToolPathError
+from twin.planning.accuracy import pitch_bound_mm
+from twin.planning.output_files import check_outputs
+from twin.planning.paths import PlanSetup, Progress, plan, prepare, silent
+from twin.planning.replay_job import replay_tables, write_replay_job
+from twin.planning.settings import PathSettings
+from twin.settings.check import changed
+
+#: Rapid traverse rate for the machining time, mm/min.
+RAPID_MM_MIN = 10_000.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PlannedPath:
+    """A tool path and what it was made from.
+
+    Attributes:
+        settings: its parameters.
+        setup: part, tool and stock.
+        path: the moves of the tool tip; none where the tool cannot cut anything.
+        pitch_bound_mm: bound on the error between the part's slices, see `twin.planning.accuracy`.
+        computed_s: computing time.
+    """
+
+    settings: PathSettings
+    setup: PlanSetup
+    path: ToolPath
+    pitch_bound_mm: float
+    computed_s: float
+
+    @property
+    def machine_time_s(self) -> float:
+        """Time at the programmed feeds, with rapids at 10 m/min and without acceleration."""
+        return self.path.duration_s(RAPID_MM_MIN)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """A warning where the part's slices may be too far apart for the required accuracy."""
+        settings = self.settings
+        if self.pitch_bound_mm <= settings.tolerance_mm:
+            return ()
+        other = "; --exact makes rows from the triangles instead" if settings.strategy == "scan" else ""
+        return (
+            f"pitch_mm = {settings.pitch_mm:g} may be too coarse: details between slices are accurate to "
+            f"{self.pitch_bound_mm:.3g} mm, more than tolerance_mm = {settings.tolerance_mm:g}{other}",
+        )
+
+    @property
+    def operation(self) -> Operation:
+        """The path with tool number, spindle speed and coolant, as a program needs them."""
+        return Operation(
+            path=self.path,
+            number=self.settings.tool_number,
+            spindle_rpm=self.settings.spindle_rpm,
+            coolant=self.settings.coolant,
+            teeth=self.settings.teeth,
+        )
+
+    @property
+    def nc_options(self) -> NcOptions:
+        """Control, decimal places and program number of the NC program."""
+        settings = self.settings
+        return NcOptions(dialect=settings.dialect, decimals=settings.decimals, program_number=settings.program_number)
+
+    def write(self, out: Path | str, job_file: Path | str | None = None, *, force: bool = False) -> int:
+        """Write the NC program and the job file that replays it.
+
+        Args:
+            out: the NC program.
+            job_file: the job file; the program's name with the suffix ``.toml`` if not given.
+            force: replace files that exist.
+
+        Returns:
+            Number of lines of the program.
+
+        Raises:
+            ToolPathError: the path is empty, a file exists already, or a file cannot be written.
+        """
+        out = Path(out)
+        job = out.with_suffix(".toml") if job_file is None else Path(job_file)
+        if self.path.empty:
+            raise ToolPathError(
+                f"{out}: no file is written, as {describe(self.path.tool)} cannot cut anything of this stock: no "
+                "pocket is wide enough, or all of it lies above the stock or outside the region"
+            )
+        check_outputs({"program": out, "job": job}, force=force)
+        operations, options = [self.operation], self.nc_options
+        lines = write_nc(out, operations, options)
+        folder = job.absolute().parent
+        tables = replay_tables(out, operations, options, self.setup.stock_mm, self.settings.pitch_mm, folder)
+        write_replay_job(job, tables, f"Replays {out.name}: {self.path.name}")
+        return lines
+
+
+def plan_paths(
+    part: Path | str | SlicedPart,
+    settings: PathSettings | None = None,
+    *,
+    progress: Progress = silent,
+    **values: Any,
+) -> PlannedPath:
+    """Plan a tool path on a part.
+
+    Args:
+        part: STL file of the part, a closed solid in mm, or its slices.
+        settings: parameters; only those of ``values`` if not given.
+        progress: called with the current task and its share that is done, 0 to 1.
+        values: parameters by the names of `PathSettings`, before those of ``settings``.
+
+    Returns:
+        The path; `PlannedPath.write` writes program and job file.
+
+    Raises:
+        SettingsError: wrong parameters; the message has every mistake.
+        MeshError, StockError, ToolError: the mesh is not a closed solid, an impossible pitch, an invalid tool text.
+        ToolPathError: a step-over or depth too large for the tool, or a safe height below the stock's top.
+
+    Example:
+        >>> plan_paths("part.stl", strategy="scan", tool="ball 8", stepover_mm=0.25).write("part.nc")
+    """
+    settings = changed(PathSettings, settings, values, "plan_paths")
+    begin = time.perf_counter()
+    setup = prepare(settings, part, progress)
+    path = plan(settings, setup, progress)
+    return PlannedPath(
+        settings=settings,
+        setup=setup,
+        path=path,
+        pitch_bound_mm=pitch_bound_mm(settings, setup),
+        computed_s=time.perf_counter() - begin,
+    )
