@@ -10,6 +10,7 @@ from support.measured_files import FORMATS, RATE_HZ, forces, times, write_csv
 from support.reference import REFERENCE
 from support.slot_run import SlotRun
 
+from twin.archive.force_table import joined_arrays
 from twin.errors import MeasuredError
 from twin.measured.forces import force_log, read_forces
 from twin.measured.read import read_log
@@ -18,7 +19,6 @@ from twin.measured.spindle import spindle_speed
 from twin.measured.steady import find_cut
 from twin.measured.zero import in_windows
 from twin.sinks.mcap_sink import McapSink
-from twin.sinks.memory import MemorySink
 
 DYNOWARE = REFERENCE / "measured" / "flat_slot_dynoware"
 #: Mean forces that others found in the files, N, by feed, mm/min.
@@ -52,13 +52,12 @@ def test_the_suffix_does_not_matter(name: str, tmp_path: Path) -> None:
 
 
 def test_a_run_is_a_log(tmp_path: Path) -> None:
-    run, memory = SlotRun(step_mm=4.0, per_turn=30), MemorySink()
+    run = SlotRun(step_mm=4.0, per_turn=30)
     with McapSink(tmp_path / "run.mcap") as sink:
         for record in run.records():
             sink.write(record)
-            memory.write(record)
     log = read_forces(tmp_path / "run.mcap")
-    want = memory.forces()
+    want = joined_arrays(run.records())
     np.testing.assert_allclose(log.force_n, np.column_stack([want["fx_n"], want["fy_n"], want["fz_n"]]))
     assert log.spindle_angle_rad is not None
     np.testing.assert_allclose(log.spindle_angle_rad, want["spindle_angle_rad"])
