@@ -246,10 +246,10 @@ def identify(
     from twin.identification.cuts.load import load_cuts
     from twin.identification.identify import identify as identify_cuts
 
-    made = load_cuts(cuts, holdout=holdout)
-    if runout is not None:
-        made = made.model_copy(update={"fit": made.fit.model_copy(update={"runout": runout})})
-    return identify_cuts(made, method, progress)
+    fit = {"method": method, "runout": runout, "holdout": [*holdout]}
+    return identify_cuts(
+        load_cuts(cuts, {key: value for key, value in fit.items() if value is not None}), None, progress
+    )
 
 
 def write_coefficients(identified: Identified, path: StrPath, *, force: bool = False) -> Path:

@@ -13,7 +13,7 @@ from pydantic import Field
 from typer.testing import CliRunner
 
 from twin.cli.help import HelpCommand
-from twin.cli.options import option_of, options_from
+from twin.cli.options import option_of, options_from, options_table
 from twin.settings.keys import keys_table
 from twin.settings.table import FilePath, Key, Table
 
@@ -41,7 +41,7 @@ def call(*arguments: str) -> tuple[int, str, dict[str, Any]]:
     found: dict[str, Any] = {}
 
     @app.command(cls=HelpCommand)
-    @options_from(Milling, "given", omit=("tables",), panel="Milling")
+    @options_from(Milling, "given", panel="Milling")
     def mill(
         part: Path,
         given: Mapping[str, Any],
@@ -103,15 +103,19 @@ def test_an_option_is_named_by_its_key() -> None:
     assert [option_of(Milling, key) for key in ("feed_mm_min", "lead_mm", "climb")] == ["--feed", "--lead", "--climb"]
 
 
-def test_two_keys_with_one_option_and_tables_are_mistakes_of_the_program() -> None:
+def test_two_keys_with_one_option_and_lists_of_tables_are_mistakes_of_the_program() -> None:
     class Twice(Table):
         lead_mm: float = 0.0
         lead_mm_min: float = 1.0
 
     with pytest.raises(ValueError, match="--lead is the option of lead_mm and of lead_mm_min"):
         options_from(Twice, "given")
+
+    class Nested(Table):
+        rows: tuple[dict[str, float], ...] = ()
+
     with pytest.raises(TypeError, match="no option can give"):
-        options_from(Milling, "given")(lambda given: None)
+        options_from(Nested, "given")(lambda given: None)
 
 
 def test_a_pages_table_has_every_key_with_its_default() -> None:
@@ -125,3 +129,12 @@ def test_a_pages_table_has_every_key_with_its_default() -> None:
         '| `entry` | `"ramp"` | entry into material: `ramp`, `helix` |',
         "| `climb` | `true` | climb milling |",
     ]
+
+
+def test_a_pages_table_has_every_option() -> None:
+    rows = options_table(Milling).splitlines()[2:]
+    assert len(rows) == len(Milling.model_fields) - 1
+    assert rows[0] == "| `--feed MM/MIN` | 600 | feed of cuts |"
+    assert rows[4] == r"| `--entry ramp\|helix` | ramp | entry into material |"
+    assert rows[5] == "| `--climb`, `--conventional` | `--climb` | climb milling |"
+    assert rows[7] == "| `--quick` | | quickly |"

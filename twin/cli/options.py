@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path, PurePath
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
@@ -30,6 +30,7 @@ def options_from(
 
     The command gets in that parameter the values of the options that were given, by key: an option that was not given
     is not in it, so that a file's value or the default holds. ``panel`` is the heading above the options in the help.
+    Keys that are tables themselves have no option.
 
     Args:
         into: name of the command's parameter, a mapping.
@@ -39,7 +40,7 @@ def options_from(
         ValueError: two keys with one option.
         TypeError: a key whose type no option can give.
     """
-    fields = {name: field for name, field in model.model_fields.items() if name not in omit}
+    fields = {name: field for name, field in _fields(model).items() if name not in omit}
     _refuse_double_names(fields)
 
     def decorate(function: Command) -> Command:
@@ -60,6 +61,15 @@ def options_from(
         return command
 
     return decorate
+
+
+def _fields(model: type[BaseModel]) -> dict[str, FieldInfo]:
+    """The fields that options can give: all but tables."""
+    return {name: field for name, field in model.model_fields.items() if not _is_table(bare(field.annotation))}
+
+
+def _is_table(annotation: Any) -> bool:
+    return get_origin(annotation) is dict or (isinstance(annotation, type) and issubclass(annotation, BaseModel))
 
 
 def _refuse_double_names(fields: Mapping[str, FieldInfo]) -> None:
@@ -105,10 +115,14 @@ def _typed(annotation: Any) -> Any:
 
 def _help(name: str, field: FieldInfo, *, repeated: bool) -> str:
     """The description as a sentence, with the default after it."""
-    text = field.description or without_unit(name)[0].replace("_", " ")
-    text = f"{text[:1].upper()}{text[1:]}{'; may be repeated' if repeated else ''}."
+    text = _meaning(field, repeated=repeated)
+    text = f"{text[:1].upper()}{text[1:]}."
     default = _shown_default(name, field)
     return escape(text) + (f" [dim]{escape(f'[default: {default}]')}[/dim]" if default else "")
+
+
+def _meaning(field: FieldInfo, *, repeated: bool) -> str:
+    return f"{field.description or ''}{'; may be repeated' if repeated else ''}"
 
 
 def _shown_default(name: str, field: FieldInfo) -> str | None:
@@ -135,6 +149,24 @@ def type_metavar(annotation: Any) -> str | None:
     kinds = (kind for kind in _METAVARS if isinstance(annotation, type) and issubclass(annotation, kind))
     kind = next(kinds, None)
     return None if kind is None else _METAVARS[kind]
+
+
+def options_table(model: type[BaseModel]) -> str:
+    """A page's table of a model's options, in Markdown."""
+    return "\n".join(["| option | default | meaning |", "| --- | --- | --- |", *_rows(model)])
+
+
+def _rows(model: type[BaseModel]) -> Iterator[str]:
+    for name, field in _fields(model).items():
+        annotation = str if key_of(field).as_text else _typed(field.annotation)
+        value = _metavar(name, field, annotation) or "|".join(map(str, get_args(annotation)))
+        names = [n for pair in option_names(name, field) for n in pair.split("/")]
+        default = _shown_default(name, field) or ""
+        if default and annotation is bool:
+            default = f"`--{default}`"
+        meaning = _meaning(field, repeated=get_origin(annotation) is list)
+        cells = (", ".join(f"`{f'{n} {value}'.strip()}`" for n in names), default, meaning)
+        yield f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |".replace("|  |", "| |")
 
 
 def option_of(model: type[BaseModel], key: str) -> str:

@@ -7,7 +7,7 @@ import io
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -15,7 +15,7 @@ from twin.comparison.comparison import Comparison, compare_files
 from twin.errors import SettingsError, TwinError
 from twin.measured.settings import CompareSettings
 from twin.settings.check import checked
-from twin.settings.table import FilePath
+from twin.settings.table import FilePath, Key
 from twin.settings.toml_file import parse_toml, read_text
 
 #: Former names of keys.
@@ -25,7 +25,9 @@ _FORMER = {"lag": "lag_s"}
 class BatchRow(CompareSettings):
     """A row of a table: a run, a log, and the settings of their comparison."""
 
-    name: str = Field(default="", description="name of the row in messages and results; the log's if not given")
+    name: Annotated[str, Key(unset="the log's name")] = Field(
+        default="", description="name of the row in messages and results"
+    )
     run: FilePath = Field(description="archive of the run, relative to the table's folder")
     measured: FilePath = Field(description="measured log, relative to the table's folder")
 

@@ -37,18 +37,18 @@ class Prepared:
     measured: Measured
 
 
-def prepare(cuts: Cuts, say: Callable[[str], None] = lambda _: None) -> list[Prepared]:
+def prepare(cuts: Cuts, report: Callable[[str], None] = lambda _: None) -> list[Prepared]:
     """Read the logs and make the models of all cuts.
 
     Args:
-        say: told what is being done.
+        report: called with a line about the present task.
 
     Raises:
         TwinError, gcode.errors.GcodeError: a log or job that cannot be used; the message names it.
     """
     made = []
     for cut in cuts.cuts:
-        say(f"{cut.name}: {'replaying its job' if cut.job else 'reading' if cut.log else 'mean force'}")
+        report(f"{cut.name}: {'replaying its job' if cut.job else 'reading' if cut.log else 'mean force'}")
         try:
             made.append(_job_cut(cuts, cut) if cut.job is not None else _straight_cut(cuts, cut))
         except (MeasuredError, CompareError, IdentifyError) as error:
@@ -56,26 +56,26 @@ def prepare(cuts: Cuts, say: Callable[[str], None] = lambda _: None) -> list[Pre
     return made
 
 
-def identify(cuts: Cuts, method: Method | None = None, say: Callable[[str], None] = lambda _: None) -> Identified:
+def identify(cuts: Cuts, method: Method | None = None, report: Callable[[str], None] = lambda _: None) -> Identified:
     """Find the cutting coefficients.
 
     Args:
         method: in place of the file's.
-        say: told what is being done.
+        report: called with a line about the present task.
 
     Raises:
         TwinError, gcode.errors.GcodeError: see `prepare`; or cuts that the method cannot use.
     """
-    return identify_prepared(cuts, prepare(cuts, say), method, say)
+    return identify_prepared(cuts, prepare(cuts, report), method, report)
 
 
 def identify_prepared(
-    cuts: Cuts, prepared: list[Prepared], method: Method | None = None, say: Callable[[str], None] = lambda _: None
+    cuts: Cuts, prepared: list[Prepared], method: Method | None = None, report: Callable[[str], None] = lambda _: None
 ) -> Identified:
     """The same with cuts that `prepare` made."""
     method = method or cuts.fit.method
     fitted = [p for p in prepared if not p.held_out]
-    say(f"fitting {len(fitted)} cuts ({method})")
+    report(f"fitting {len(fitted)} cuts ({method})")
     if method == "waveform":
         return _by_waveforms(cuts, prepared, fitted)
     given = equations([p.model for p in fitted], [p.measured for p in fitted], cuts.fit)

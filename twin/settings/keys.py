@@ -55,7 +55,7 @@ def default_text(field: FieldInfo) -> str | None:
     if field.is_required():
         return None
     value = field.get_default(call_default_factory=True)
-    if value is None or isinstance(value, BaseModel) or (value in ((), [], {}) and key_of(field).unset):
+    if value is None or isinstance(value, BaseModel) or (value in ((), [], {}, "") and key_of(field).unset):
         return key_of(field).unset
     return toml_value(_short(value))
 

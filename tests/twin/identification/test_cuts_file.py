@@ -183,7 +183,7 @@ def test_every_mistake_is_said_at_once() -> None:
 
 
 def test_a_name_on_the_command_line_is_checked_too() -> None:
-    assert problems(with_cut(), holdout=["ap7"]) == ['--holdout = "ap7": expected the name of a cut: ap1']
+    assert problems(with_cut(), fit={"holdout": ["ap7"]}) == ['fit.holdout = "ap7": expected the name of a cut: ap1']
 
 
 @pytest.mark.parametrize(

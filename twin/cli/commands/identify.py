@@ -2,49 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from twin.cli.options import options_from
+from twin.identification.cuts.cuts_file import Fit
 
 if TYPE_CHECKING:
     from twin.identification.cuts.cuts_file import Cuts
     from twin.identification.result import Identified
 
 
-class Method(StrEnum):
-    """How coefficients are found."""
-
-    MEAN = "mean"
-    ITERATIVE = "iterative"
-    WAVEFORM = "waveform"
-
-
+@options_from(Fit, "fit", panel="Fit, in place of the file's")
 def identify(
     cuts_file: Annotated[Path, typer.Argument(metavar="CUTS", help="File of test cuts (TOML).", show_default=False)],
-    method: Annotated[
-        Method | None, typer.Option(help="Method; the file's, or mean, if not given.", show_default=False)
-    ] = None,
-    holdout: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="Report this cut and do not fit it; may be repeated.", show_default=False),
-    ] = None,
-    runout: Annotated[
-        bool | None,
-        typer.Option(
-            "--runout/--no-runout", help="Whether runout is unknown too (waveform); the file's.", show_default=False
-        ),
-    ] = None,
+    fit: Mapping[str, Any],
     out: Annotated[
         Path | None,
         typer.Option(
             "-o",
             "--out",
             metavar="FILE.toml",
-            help="Write the coefficients here, and a plot beside.",
+            help="Write the coefficients here, and a plot next to them.",
             show_default=False,
         ),
     ] = None,
@@ -61,25 +44,23 @@ def identify(
     """Find cutting coefficients from test cuts, with their errors.
 
     mean: linear least squares on mean forces. iterative: search that matches simulated mean forces. waveform: least
-    squares on the force over the revolution, phases found, with --runout the runout too.
+    squares on the force over a revolution; phases are found, with --runout the runout as well.
     """
     from twin.errors import IdentifyError
     from twin.identification.cuts.load import load_cuts
     from twin.identification.identify import identify as find
     from twin.identification.write import refuse_existing
 
-    cuts = load_cuts(cuts_file, holdout=holdout or ())
-    if runout is not None:
-        cuts = cuts.model_copy(update={"fit": cuts.fit.model_copy(update={"runout": runout})})
+    cuts = load_cuts(cuts_file, fit)
     if out is not None and plot is None:
         plot = out.with_suffix(".png")
     _check_suffixes(out, plot)
     refuse_existing([p for p in (out, plot) if p is not None], force=force)
-    with _said() as say:
-        result = find(cuts, method.value if method is not None else None, say)
+    with _progress_line() as report:
+        result = find(cuts, report=report)
     try:
         _write(result, out, plot, force=force)
-    except IdentifyError:  # what was found tells why no set can be written
+    except IdentifyError:  # the result shows why no set can be written
         if not as_json:
             _print(cuts, result, {}, verbose=verbose)
             _warn(result)
@@ -92,8 +73,8 @@ def identify(
 
 
 @contextmanager
-def _said() -> Iterator[Callable[[str], None]]:
-    """What is being done, on a terminal."""
+def _progress_line() -> Iterator[Callable[[str], None]]:
+    """A line with the present task, on a terminal."""
     from rich.markup import escape
 
     from twin.cli.console import errors

@@ -1,4 +1,4 @@
-"""The keys of a file of test cuts, one model a table; strict, with a word on each key as in a job file."""
+"""The keys of a file of test cuts, one model for each table; strict, with a description of each key."""
 
 from __future__ import annotations
 
@@ -7,91 +7,123 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, Strict
 
-from twin.identification.models.straight import Direction
 from twin.job.model import Tool
 from twin.measured.settings import LogReading
-from twin.settings.table import FilePath, Point, Table
+from twin.settings.table import FilePath, Key, Point, Table
 
+Direction: TypeAlias = Literal["slot", "up", "down"]
 Name: TypeAlias = Literal["Ktc", "Kte", "Krc", "Kre", "Kac", "Kae"]
 Method: TypeAlias = Literal["mean", "iterative", "waveform"]
 Window: TypeAlias = Annotated[tuple[float, float], Strict(False)]
+Windows: TypeAlias = Annotated[tuple[Window, ...], Strict(False)]
 Texts: TypeAlias = Annotated[tuple[str, ...], Strict(False)]
 
 
 class CutTool(Tool):
-    """The tool of the cuts, keys as in a job; number and flute length may be left out."""
+    """The tool of the cuts, keys as in a job; number and flute length are optional."""
 
     number: int = Field(default=1, ge=1, description="tool number, without meaning here")
     flute_length_mm: float = Field(
-        default=0.0, gt=0.0, description="height of the cutting part above the tip; as the cuts need it if not given"
+        default=0.0, gt=0.0, description="height of the cutting part above the tip; as needed by the cuts if not given"
     )
 
 
-class Shared(LogReading):
-    """What `[defaults]` may give for all cuts, and each cut for itself."""
+class CutSource(Table):
+    """Name of a cut, and where its force comes from."""
 
-    direction: Direction | None = Field(default=None, description="slot, up or down milling; feed along +x, M3")
+    name: Annotated[str, Key(unset="the log's name")] = Field(
+        default="", description="name of the cut, in tables and for holdout"
+    )
+    log: FilePath | None = Field(default=None, description="measured log, relative to this file's folder")
+    mean_force_n: Point | None = Field(
+        default=None, description="mean force [x, y, z] in place of a log, N; map and force_on hold as for Fx, Fy, Fz"
+    )
+    mean_error_n: Annotated[Point | None, Key(unset="unknown")] = Field(
+        default=None, description="standard errors of mean_force_n, N"
+    )
+    job: FilePath | None = Field(
+        default=None, description="job file in place of direction, depths, speed, feed and tool; it is replayed"
+    )
+
+
+class CutEngagement(Table):
+    """Direction, depths, speed and feed of a straight cut."""
+
+    direction: Direction | None = Field(
+        default=None,
+        description="slot, up milling (stock at y > 0 of the axis) or down (climb) milling (y < 0); feed along +x, M3",
+    )
     axial_depth_mm: float | None = Field(default=None, gt=0.0, description="axial depth of cut, mm")
-    radial_depth_mm: float | None = Field(
-        default=None, gt=0.0, description="radial depth of cut, mm of the nominal diameter"
+    radial_depth_mm: Annotated[float | None, Key(unset="the diameter, for a slot")] = Field(
+        default=None, gt=0.0, description="radial depth of cut, within the tool's nominal diameter, mm"
     )
     spindle_rpm: float | None = Field(default=None, gt=0.0, description="spindle speed, rpm")
     feed_mm_min: float | None = Field(default=None, gt=0.0, description="feed, mm/min")
-    window_s: Window | None = Field(
-        default=None, description="from, to: the steady cut in the log's time; found if not given"
+
+
+class Shared(LogReading, CutEngagement):
+    """Keys of one cut that `[defaults]` may give for all cuts: engagement, how the log is read, and its steady part."""
+
+    window_s: Annotated[Window | None, Key(unset="detected")] = Field(
+        default=None, description="[from, to]: the steady cut in the log's time"
     )
-    air_s: Annotated[tuple[Window, ...], Strict(False)] | None = Field(
-        default=None, description="windows of the log without cutting; found if not given"
+    air_s: Annotated[Windows | None, Key(unset="detected")] = Field(
+        default=None, description="[[from, to], ...]: parts of the log without cutting"
     )
     zero: Literal["auto", "line", "constant", "none"] = Field(
         default="auto",
-        description="what is taken off: a line or a constant through the air, nothing, or what the air allows",
+        description="zero that is subtracted: line or constant through the air, none, or auto: line with air on both "
+        "sides of the cut, else constant, none without air",
     )
 
 
-class Cut(Shared):
+class Cut(Shared, CutSource):
     """One test cut."""
 
-    name: str = Field(default="", description="name of the cut; that of its log, or its number, if not given")
-    log: FilePath | None = Field(default=None, description="measured log, relative to this file's folder")
-    mean_force_n: Point | None = Field(default=None, description="mean force x, y, z in place of a log, N")
-    mean_error_n: Point | None = Field(default=None, description="standard errors of mean_force_n, N")
-    job: FilePath | None = Field(default=None, description="job file of the cut, for any engagement; it is replayed")
-    run_window_s: Window | None = Field(
-        default=None, description="from, to: the part of the job's run that is used, machine time"
+    run_window_s: Annotated[Window | None, Key(unset="where it cuts")] = Field(
+        default=None, description="[from, to]: the part of the job's run that is used, machine time"
     )
-    lag_s: float | None = Field(default=None, description="log's time less machine time of the job's run, s")
-    spindle_angle_deg: float | None = Field(
-        default=None,
-        description="angle of tooth 0 at the log's time 0, from +x in the sense of rotation; found if not given",
+    lag_s: Annotated[float | None, Key(unset="found by cross-correlation")] = Field(
+        default=None, description="log's time minus machine time of the job's run, s"
+    )
+    spindle_angle_deg: Annotated[float | None, Key(unset="found")] = Field(
+        default=None, description="angle of tooth 0 at the log's time 0, from +x in the direction of rotation"
     )
     holdout: bool = Field(default=False, description="report this cut, but do not fit it")
 
 
 class Fit(Table):
-    """How the coefficients are found."""
+    """Method and weights of the fit."""
 
-    method: Method = Field(default="mean", description="method, if the command line names none")
-    holdout: Texts = Field(default=(), description="names of cuts that are reported and not fitted")
-    weights: Literal["errors", "equal"] = Field(
-        default="errors", description="cuts weighted by the standard errors of their means, or all alike"
+    method: Method = Field(
+        default="mean",
+        description="method: mean (least squares on mean forces), iterative (search by simulation), or waveform",
     )
-    fixed: dict[Name, float] = Field(default_factory=dict, description="coefficients that are given, not found")
-    start: dict[Name, float] = Field(default_factory=dict, description="where the iterative search begins")
+    holdout: Annotated[Texts, Key(metavar="NAME", unset="none")] = Field(
+        default=(), description="name of a cut that is reported and not fitted"
+    )
+    weights: Literal["errors", "equal"] = Field(
+        default="errors", description="weights by the standard errors of the means, or equal"
+    )
+    fixed: dict[Name, float] = Field(default_factory=dict, description="coefficients with given values")
+    start: dict[Name, float] = Field(default_factory=dict, description="start of the iterative search")
     lower: dict[Name, float] = Field(default_factory=dict, description="lower bounds of the iterative search")
     upper: dict[Name, float] = Field(default_factory=dict, description="upper bounds of the iterative search")
-    runout: bool = Field(default=False, description="whether runout is unknown too (waveform)")
-    harmonics: int | None = Field(
-        default=None, ge=1, le=400, description="multiples of the spindle frequency that waveforms are compared in"
+    runout: bool = Field(default=False, description="find the runout as well (waveform)")
+    harmonics: Annotated[int | None, Key(unset="12 per tooth, at most 60")] = Field(
+        default=None,
+        ge=1,
+        le=400,
+        description="number of harmonics of the spindle frequency (waveform)",
     )
-    lowpass_hz: float | None = Field(
-        default=None, gt=0.0, description="highest frequency that waveforms are compared in, Hz"
+    lowpass_hz: Annotated[float | None, Key(unset="none")] = Field(
+        default=None, gt=0.0, description="highest frequency that is compared, Hz (waveform)"
     )
     speed: Literal["found", "given"] = Field(
-        default="found", description="spindle speed of a log: found within 1 % of the one given, or taken as given"
+        default="found", description="spindle speed of a log: found within 1 % of the given one, or as given"
     )
-    source: str | None = Field(
-        default=None, min_length=1, pattern=r"\S", description="source that the coefficients are written with"
+    source: Annotated[str | None, Key(unset="none")] = Field(
+        default=None, min_length=1, pattern=r"\S", description="source that is written with the coefficients"
     )
 
 
@@ -102,7 +134,7 @@ class CutsFile(Table):
         default=None, description="the tool, keys as in a job; not needed if all cuts are jobs"
     )
     defaults: Shared = Field(default_factory=Shared, description="keys for all cuts that do not give them")
-    fit: Fit = Field(default_factory=Fit, description="how the coefficients are found")
+    fit: Fit = Field(default_factory=Fit, description="method and weights of the fit")
     cuts: Annotated[tuple[Cut, ...], Strict(False)] = Field(
         description="the test cuts, each under [[cuts]], at least one", json_schema_extra={"minItems": 1}
     )

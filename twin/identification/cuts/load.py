@@ -1,9 +1,9 @@
-"""Files of test cuts in: read, check everything, and say every mistake at once."""
+"""Files of test cuts: read, check everything, and report every mistake at once."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -17,34 +17,38 @@ from twin.job.facts import Facts
 from twin.settings.problems import Location, Problem, problems_of, wrong
 from twin.settings.toml_file import read_toml
 
-#: Keys whose default says "as the cuts need it".
+#: What `load_cuts` changes in ``[fit]`` unless more is given.
+NOTHING: Mapping[str, Any] = {}
+#: Keys whose default stands for "as the cuts need it".
 _NO_DEFAULT = (("tool", "flute_length_mm"),)
 
 
-def load_cuts(path: str | PathLike[str], *, holdout: Sequence[str] = ()) -> Cuts:
+def load_cuts(path: str | PathLike[str], fit: Mapping[str, Any] = NOTHING) -> Cuts:
     """Read a file of test cuts.
 
     Args:
-        holdout: names of cuts that are not fitted, besides those that the file names.
+        fit: keys in place of those in the file's ``[fit]``; cuts in ``holdout`` are added to those of the file.
 
     Raises:
-        CutsError: the file cannot be read, is no TOML, or has mistakes: all of them are in the message.
+        CutsError: the file cannot be read, is not TOML, or has mistakes: all of them are in the message.
     """
     path = Path(path)
     data, _ = read_toml(path, "a file of test cuts", CutsError)
-    return cuts_from_dict(data, path, holdout=holdout)
+    return cuts_from_dict(data, path, fit)
 
 
-def cuts_from_dict(data: Mapping[str, Any], path: str | PathLike[str], *, holdout: Sequence[str] = ()) -> Cuts:
+def cuts_from_dict(data: Mapping[str, Any], path: str | PathLike[str], fit: Mapping[str, Any] = NOTHING) -> Cuts:
     """Make test cuts from tables as `tomllib` gives them.
 
     Args:
-        path: the file they would stand in; its folder is what files in it are relative to.
+        path: the file; its folder is the base of relative file names.
+        fit: see `load_cuts`.
 
     Raises:
         CutsError: see `load_cuts`.
     """
     path = Path(path)
+    data = {**data, "fit": _merged(data.get("fit", {}), fit)}
     problems: list[Problem] = []
     try:
         CutsFile.model_validate(data)
@@ -52,14 +56,22 @@ def cuts_from_dict(data: Mapping[str, Any], path: str | PathLike[str], *, holdou
         problems += problems_of(error.errors(include_url=False), CutsFile)
     facts = Facts(data, [p.location for p in problems], _default)
     problems += [problem for rule in RULES for problem in rule(facts, path.parent)]
-    problems += _names(facts, holdout)
+    problems += _names(facts)
     if problems:
         raise CutsError(str(path), [str(_with_name(p, facts)) for p in problems])
     joined = _joined(data, path.parent)
     names = _named(facts)
     joined["cuts"] = [{**cut, "name": name} for cut, name in zip(joined["cuts"], names, strict=True)]
-    joined["fit"] = {**data.get("fit", {}), "holdout": [*data.get("fit", {}).get("holdout", []), *holdout]}
     return Cuts.model_validate({**joined, "path": path})
+
+
+def _merged(own: Any, fit: Mapping[str, Any]) -> Any:
+    """The table ``[fit]`` with other keys in it; as is where it is not a table."""
+    if not isinstance(own, Mapping):
+        return own
+    held_out = own.get("holdout", [])
+    more = [*held_out, *fit["holdout"]] if "holdout" in fit and isinstance(held_out, list) else held_out
+    return {**own, **fit, "holdout": more}
 
 
 def _named(facts: Facts) -> list[str]:
@@ -72,7 +84,7 @@ def _named(facts: Facts) -> list[str]:
     return names
 
 
-def _names(facts: Facts, holdout: Sequence[str]) -> Iterator[Problem]:
+def _names(facts: Facts) -> Iterator[Problem]:
     """No two cuts have one name, and cuts that are held out exist and are not all."""
     names = _named(facts)
     for name, count in Counter(names).items():
@@ -80,17 +92,16 @@ def _names(facts: Facts, holdout: Sequence[str]) -> Iterator[Problem]:
             index = len(names) - 1 - names[::-1].index(name)
             yield wrong(("cuts", index, "name"), name, f"a name of its own, cuts[{names.index(name)}] has it already")
     listed = facts.get("fit", "holdout") or ()
-    for name in (*listed, *holdout):
+    for name in listed:
         if name not in names:
-            at: Location = ("fit", "holdout") if name in listed else ("--holdout",)
-            yield wrong(at, name, f"the name of a cut: {', '.join(names)}")
-    out = {*listed, *holdout, *(n for i, n in enumerate(names) if facts.get("cuts", i, "holdout"))}
+            yield wrong(("fit", "holdout"), name, f"the name of a cut: {', '.join(names)}")
+    out = {*listed, *(n for i, n in enumerate(names) if facts.get("cuts", i, "holdout"))}
     if names and out >= set(names):
         yield Problem(("cuts",), ": all are held out; expected at least one that is fitted")
 
 
 def _with_name(problem: Problem, facts: Facts) -> Problem:
-    """Say the cut's name where a mistake is in a cut."""
+    """The problem with the cut's name where it is in a cut."""
     match problem.location:
         case ("cuts", int(index), *rest) if rest != ["name"]:
             name = facts.get("cuts", index, "name")

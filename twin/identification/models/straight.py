@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -17,11 +16,10 @@ from twin.arrays import FloatArray
 from twin.cutting.coefficients import CuttingCoefficients
 from twin.cutting.engagement import NO_ENGAGEMENT, EngagementMap
 from twin.cutting.forces import ForceModel
+from twin.identification.cuts.cuts_file import Direction
 from twin.tolerance import Tolerance
 from twin.tools.edges import CuttingEdges, meridian
 from twin.tools.shape import ToolShape
-
-Direction: TypeAlias = Literal["slot", "up", "down"]
 
 #: Order of the coefficients in every vector and matrix of this package.
 NAMES = ("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae")
