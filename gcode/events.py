@@ -1,8 +1,8 @@
-"""What an interpreted NC program says: a stream of frozen, typed events in the order of execution.
+"""Events of an interpreted NC program: frozen, typed values in the order of execution.
 
 Lengths are mm, feeds mm/min, spindle speeds rpm, whatever units the program was written in. Points are the
-controlled point (the tool tip as the control believes it to be) in machine coordinates: the gauge point less the
-active tool length offset. Arcs stay arcs; the consumer decides how finely to step them.
+controlled point (the tool tip as the control knows it) in machine coordinates: the gauge point less the
+active tool length offset. Arcs stay arcs; the consumer chooses the chords.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class MotionState:
         tool_offset_xy_mm: the active tool's offset in x and y, which only some controls have.
         wcs: name of the active work offset, e.g. ``G54``.
         plane: active plane, 17, 18 or 19.
-        feed_mode: what F means: ``per-minute`` (G94), ``inverse-time`` (G93) or ``per-revolution`` (G95).
+        feed_mode: meaning of F: ``per-minute`` (G94), ``inverse-time`` (G93) or ``per-revolution`` (G95).
         length_number: number of the active length offset (H), None without one.
         radius_number: number of the active cutter compensation (D), None without one.
         compensation: ``off`` (G40), ``left`` (G41) or ``right`` (G42).
@@ -65,7 +65,7 @@ class LinearMotion:
         rapid: True for a positioning motion at the machine's rapid rate; then ``feed_mm_min`` is 0.
         feed_mm_min: speed of the controlled point along the path; with G95 that at the commanded spindle speed.
         tapping: True where the feed follows the spindle's angle (tapping in or out of a thread).
-        extra: where the further axes stand at the motion's end.
+        extra: positions of the further axes at the motion's end.
     """
 
     place: Place
@@ -90,7 +90,7 @@ class ArcMotion:
             than 0 and at most one full turn, -1 clockwise, +2 one full turn more, and so on. Start and end at the
             same place in the plane make a full circle.
         feed_mm_min: feed along the (helical) path.
-        extra: where the further axes stand at the motion's end.
+        extra: positions of the further axes at the motion's end.
     """
 
     place: Place
@@ -135,7 +135,7 @@ class ToolChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpindleChange:
-    """M3, M4, M5 or a new S: see `MotionState` for the meaning of the fields."""
+    """M3, M4, M5 or a new S; see `MotionState` for the meaning of the fields."""
 
     place: Place
     spindle_rpm: float
@@ -153,10 +153,10 @@ class CoolantChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramStop:
-    """M0, M1 (``optional``), or the end by M2/M30/% (``end``). The replay goes on after a stop.
+    """M0, M1 (``optional``), or the end by M2/M30/% (``end``). Execution continues after a stop.
 
     Attributes:
-        message: what the program shows with the stop, if anything.
+        message: text that the program shows with the stop.
     """
 
     place: Place
@@ -174,7 +174,7 @@ class Block:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Notice:
-    """A word that was understood and has no effect on motion here, said so that nothing is skipped in silence."""
+    """A word that is understood and has no effect on motion here, reported so that nothing is skipped silently."""
 
     place: Place
     code: str

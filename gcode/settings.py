@@ -1,4 +1,4 @@
-"""What the interpreter must be told about the machine and the setup: offsets, tools, reference points, parameters."""
+"""The machine and its setup, as the interpreter needs them: offsets, tools, reference points, parameters."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class ToolOffset:
         x_mm: offset in x, which only some controls have.
         y_mm: offset in y.
         pocket: pocket of the magazine, None where it has none.
-        orientation: orientation (1 to 9) of a lathe tool, 0 for a tool that turns; 9 has its edge all around, as 0.
+        orientation: orientation (1 to 9) of a lathe tool, 0 for a rotating tool; 9 has its edge all around, as 0.
         comment: description.
 
     Raises:
@@ -71,13 +71,13 @@ class ToolOffset:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """How much a program may do before it is refused as one that runs away.
+    """Limits beyond which a program is refused as a runaway.
 
     Attributes:
         blocks: blocks executed in all.
         jumps: jumps back in all, as loops make them.
         nesting: levels of calls and macros.
-        errors: mistakes that a check collects before it stops.
+        errors: errors that a check collects before it stops.
     """
 
     blocks: int = 20_000_000
@@ -88,10 +88,10 @@ class Limits:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MachineSettings:
-    """A machine as it stands when the program starts. All lengths are mm, in machine coordinates.
+    """A machine at the start of a program. All lengths are mm, in machine coordinates.
 
     Attributes:
-        offsets: work offsets by name (`ALL_OFFSETS`): the place of each work zero; by default all lie at the machine's
+        offsets: work offsets by name (`ALL_OFFSETS`): the position of each work zero; by default all are at machine
             zero. Only those given, and those that the program sets by G10, may be used.
         rotations_deg: rotation about z of each work offset, counter-clockwise; those missing are 0.
         wcs: work offset that is active when the program starts.
@@ -100,16 +100,16 @@ class MachineSettings:
         home_mm: gauge point at the reference point that G28 goes to.
         reference_points_mm: gauge points of the further reference points (G30 P2, P3, P4) by number.
         start_mm: gauge point when the program starts.
-        tools: tool offset table: rows by number, which H, D or T name. None where it is not known: then every length
-            and radius counts as 0, and a notice says so.
+        tools: tool offset table: rows by number, which H, D or T name. None where it is not known: every length and
+            radius then counts as 0, with a notice.
         tool: number of the tool in the spindle when the program starts, 0 for none.
-        variables: common variables or persistent parameters by number, as they stand at the start.
-        search_path: folders where subprogram files are looked for, after that of the program itself.
+        variables: common variables or persistent parameters by number, at the start.
+        search_path: folders of subprogram files, searched after the folder of the program.
         arc_tolerance_mm: how far the radii at an arc's two ends may differ; None for the dialect's own rule.
         arc_centres: whether I, J, K at start-up are measured from the arc's start or are coordinates.
         block_delete: True where the block delete switch is on.
-        optional_stop: True where the optional stop switch is on; it is only told in the `ProgramStop` event.
-        units: what lengths and feeds mean until the program says G20 or G21.
+        optional_stop: True where the optional stop switch is on; the `ProgramStop` event reports it.
+        units: unit of lengths and feeds until the first G20 or G21.
         machine_units: unit in which the machine's own offset variables count, where a program reads or sets them.
         decimal_point: ``calculator``: X100 is 100 mm; ``increment``: a number without a point counts the least input
             increment (0.001 mm or 0.0001 inch), as FANUC's parameter 3401 bit 0 decides.

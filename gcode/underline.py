@@ -1,12 +1,12 @@
-"""A message with its block below it and a caret under the word, as it stands on a terminal."""
+"""A message with its block below it and a caret under the word, for terminals."""
 
 from __future__ import annotations
 
 import unicodedata
 
 _INDENT = "    "
-#: Of longer blocks only so many characters are shown before the word, and behind its beginning.
-_BEFORE, _BEHIND = 60, 60
+#: Characters of longer blocks that are shown before the word, and from its beginning on.
+_BEFORE, _AFTER = 60, 60
 #: Characters that would act on a terminal, and what is shown for them, one for one so that columns stay.
 _HARMLESS = {
     **{code: chr(0x2400 + code) for code in range(0x20) if chr(code) not in "\t\n"},
@@ -16,28 +16,28 @@ _HARMLESS = {
 
 
 def harmless(text: str) -> str:
-    """A text that does nothing to a terminal but be shown: a program may hold any byte."""
+    """A text without characters that control a terminal: a program may hold any byte."""
     return text.translate(_HARMLESS)
 
 
 def underlined(message: str, text: str, column: int) -> str:
-    """A message, the block it is about, and a caret that stands under the word at `column`, counted from 1.
+    """A message, the block it is about, and a caret under the word at `column`, counted from 1.
 
-    A tab before the word is a tab before the caret, and wide characters take two places. Of a long block only what is
-    around the word is shown.
+    A tab before the word is a tab before the caret, and wide characters take two places. Of a long block only the
+    text around the word is shown.
     """
     message, text = harmless(message), harmless(text)
     if not text.strip():
         return message
     index = min(column - 1, len(text))
-    first, last = max(0, index - _BEFORE), index + _BEHIND
+    first, last = max(0, index - _BEFORE), index + _AFTER
     head = ("…" if first else "") + text[first:index]
     tail = text[index:last] + ("…" if last < len(text) else "")
     return f"{message}\n{_INDENT}{head}{tail}\n{_INDENT}{''.join(map(_blank, head))}^"
 
 
 def _blank(character: str) -> str:
-    """What takes as much room as a character."""
+    """Blanks of the same width as a character."""
     if character == "\t":
         return character
     if unicodedata.category(character) in ("Mn", "Me", "Cf"):

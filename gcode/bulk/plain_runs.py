@@ -1,7 +1,7 @@
 """Runs of plain straight motions taken at once: what surface programs are made of, by the hundred thousand lines.
 
 `plain_run` does what `step` does, for many lines of words N, G0, G1, X, Y, Z, F, with the same numbers to the last bit.
-It knows no errors: it stops before a line that is not plain or that must be refused, and leaves it to `step`.
+It raises no errors: it stops before a line that is not plain or that must be refused, and leaves that line to `step`.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ class PlainRun:
 
     Attributes:
         begin: byte offset of the first line.
-        offset: byte offset behind the last line.
+        offset: byte offset after the last line.
         lines: how many lines there are; those without an axis word make no motion.
         line: number of each motion's line.
         end_mm: (n, 3) controlled points at the motions' ends, machine coordinates; each starts where the last ended.
         rapid: True for positioning motions.
         feed_mm_min: feeds, 0 for positioning motions.
-        position_mm: controlled point behind the last line.
+        position_mm: controlled point after the last line.
         rapid_after: True where G0 is active there.
         feed_after: feed of the last F word there, also while G0 is active.
         label_after: number of the last N word of these lines, None without one.
@@ -81,7 +81,7 @@ class PlainRun:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class PlainBatch:
-    """A run of plain lines among the events of a program; stands for the events that `expand` makes of it.
+    """A run of plain lines among the events of a program; represents the events that `expand` makes of it.
 
     Attributes:
         start: the control before it.
@@ -160,7 +160,7 @@ class _Column(NamedTuple):
         return _Column(self.line[:stop], self.value[:stop], self.pointed[:stop])
 
     def held(self, first: float, count: int, values: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
-        """What holds in each of `count` lines: `first`, and from each word on its entry of `values`, else its value."""
+        """Modal value in each of `count` lines: `first`, and from each word on its entry of `values` or its value."""
         values = self.value if values is None else values
         if self.line.size == count:
             return values

@@ -26,7 +26,7 @@ _WORDS = (
 #: Every quantifier is possessive, so that nothing is tried twice and the time grows with the text and not faster.
 _LINE = _BLANKS + rb"(?:" + _NUMBER + rb")?+(?:(?:" + rb"|".join(_WORDS) + rb")" + _BLANKS + rb")*+\r?+\n"
 
-#: A whole number of so many digits is a double, and so is the power of ten that it is divided by.
+#: A whole number of up to this many digits is exact as a double, and so is the power of ten that divides it.
 _EXACT_DIGITS = 15
 _POWERS = np.array([float(10**k) for k in range(64)])
 #: Counts of digits, letters and line ends, packed so that one running sum counts all three.
@@ -36,7 +36,7 @@ _COUNTS = np.zeros(256, dtype=np.int64)
 _COUNTS[ord("0") : ord("9") + 1] = 1
 _COUNTS[ord("A") : ord("Z") + 1] = _COUNTS[ord("a") : ord("z") + 1] = 1 << _FIELD
 _COUNTS[ord("\n")] = 1 << 2 * _FIELD
-#: Clears the bit that tells a small letter from a capital.
+#: Clears the bit that distinguishes a lower-case letter from a capital.
 _CAPITAL = np.uint8(0xDF)
 #: Longest text that the packed counts hold.
 MAX_BYTES = _MASK
@@ -60,10 +60,10 @@ class WordArrays:
 
 
 def plain_end(buffer: bytes, offset: int, max_lines: int) -> int:
-    """Where the plain lines that begin at `offset` end: behind the line end of the last of at most `max_lines`.
+    """Finds the end of the plain lines that begin at `offset`: after the line end of the last of at most `max_lines`.
 
     A last line without a line end is not one of them. So that few expressions are ever made, the number is the power
-    of two in `max_lines`: where there are more lines, those behind are found by a further call.
+    of two in `max_lines`: where there are more lines, a further call finds the rest.
     """
     if max_lines < 1:
         return offset
@@ -82,7 +82,7 @@ def read_words(buffer: bytes, offset: int, end: int) -> WordArrays:
     Args:
         buffer: the program's text.
         offset: where the first line begins.
-        end: behind the last line's end, as `plain_end` tells it.
+        end: after the end of the last line, as `plain_end` returns it.
     """
     text = np.frombuffer(buffer, np.uint8, end - offset, offset)
     seen = _COUNTS[text].cumsum()

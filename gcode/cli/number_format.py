@@ -1,4 +1,4 @@
-"""Numbers as people read them."""
+"""Numbers and times for tables and messages."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ def clock(seconds: float) -> str:
 
 
 def grouped(value: float, decimals: int = 0) -> str:
-    """A number with its thousands set apart: ``12 345``."""
+    """A number with separated thousands: ``12 345``."""
     return f"{value:,.{decimals}f}".replace(",", " ")
 
 
 def short(value: float) -> str:
-    """A number without digits that mean nothing: ``200``, ``0.05``, ``1234.568``."""
+    """A number with three decimals at most, without trailing zeros: ``200``, ``0.05``, ``1234.568``."""
     return f"{value:.3f}".rstrip("0").rstrip(".")
 
 
 def plural(count: int, word: str) -> str:
-    """``no mistakes``, ``1 mistake``, ``2 mistakes``."""
+    """``no errors``, ``1 error``, ``2 errors``."""
     return f"{count} {word}" if count == 1 else f"{count or 'no'} {word}s"
 
 
 def joined(values: Iterable[float], most: int) -> str:
-    """Numbers behind each other, or the least and largest of more than `most`."""
+    """Numbers one after another, or the least and largest of more than `most`."""
     numbers = list(values)
     return ", ".join(map(short, numbers)) if len(numbers) <= most else span(numbers[0], numbers[-1])
 

@@ -10,7 +10,7 @@ from rich.text import Text
 from gcode.cli.number_format import clock, grouped, joined, plural, short, span
 from gcode.report.stats import TYPES, Box, MotionTotals, ProgramStats, ValueSet
 
-#: So many feeds or speeds are told one by one.
+#: Most feeds or speeds that are listed one by one.
 _MOST_VALUES = 5
 
 

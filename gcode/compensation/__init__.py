@@ -1,8 +1,8 @@
 """Cutter compensation (G40, G41, G42) as geometry of motions: the programmed motions in, the tool centre's out.
 
-A `Compensation` begins with G41 or G42. Each programmed motion given to it comes out once the next one has told where
-it ends; whatever else happens meanwhile is queued behind it, in order. What G40 does depends on the control: see `end`
-and `cancel`. All lengths are mm; motions are in machine coordinates.
+A `Compensation` begins with G41 or G42. Each programmed motion comes out once the next one has determined its end;
+other events in between are queued after it, in order. The effect of G40 depends on the control: see `end` and `cancel`.
+All lengths are mm; motions are in machine coordinates.
 """
 
 from __future__ import annotations
@@ -66,12 +66,12 @@ def move(comp: Compensation, motion: Motion) -> tuple[Compensation, tuple[Event,
     """Takes the next programmed motion.
 
     Args:
-        comp: compensation as it stands.
+        comp: the present compensation.
         motion: the motion as programmed, from the programmed end of the one before.
 
     Returns:
         Compensation after it, and what is finished: motions of the tool's centre with the place, feed and state of
-        their blocks, ways round corners between them (FANUC: with those of the block before the corner, LinuxCNC: of
+        their blocks, paths around corners between them (FANUC: with those of the block before the corner, LinuxCNC: of
         the block after it), and the events queued among them.
 
     Raises:
@@ -83,7 +83,7 @@ def move(comp: Compensation, motion: Motion) -> tuple[Compensation, tuple[Event,
 
 
 def queue(comp: Compensation, event: Event) -> Compensation:
-    """Puts an event that is not a motion behind the motion that waits.
+    """Queues an event that is not a motion after the waiting motion.
 
     FANUC counts the `Block` events among them: with more than two blocks without motion in the plane the control no
     longer sees the next motion, and the waiting one ends at right angles to itself.
@@ -95,7 +95,7 @@ def end(comp: Compensation) -> tuple[tuple[Event, ...], Point]:
     """Turns compensation off without a motion (G40 alone, or the end of the program).
 
     Returns:
-        All that waited, the last motion ending at right angles to itself, and where the tool's centre then stands.
+        All waiting events, the last motion ending at right angles to itself, and the position of the tool's centre.
         The next motion starts there and goes to its programmed end: the offset is left with it. With LinuxCNC axes
         that this motion does not name go to where the program believes them to be, the uncompensated point.
 
@@ -109,12 +109,12 @@ def cancel(comp: Compensation, motion: Motion) -> tuple[Event, ...]:
     """Turns compensation off with a motion in the same block (G40 X... Y...).
 
     Args:
-        comp: compensation as it stands.
+        comp: the present compensation.
         motion: the motion as programmed, from the programmed end of the one before.
 
     Returns:
-        All that waited and the motion that cancels. With FANUC a motion along the plane's normal does not cancel: the
-        tool stays beside the path, at the end of the last motion returned, and leaves the offset with its next motion.
+        All waiting events and the motion that cancels. With FANUC a motion along the plane's normal does not cancel:
+        the tool stays off the path, at the end of the last motion returned, and leaves the offset with its next motion.
 
     Raises:
         GcodeError: ``compensation-arc-entry`` (FANUC) or ``compensation-arc-exit`` (LinuxCNC) for an arc, and those
@@ -128,11 +128,11 @@ def change(comp: Compensation, side: Hand, radius_mm: float, *, place: Place, al
 
     FANUC: with another offset the vectors at the end of the coming block are the new ones, those at its start the old
     ones; with another side the tool goes from the vector at right angles to the end of the block before to the one at
-    right angles to the start of the block after; the same code once more, alone in its block, gives a vector at right
+    right angles to the start of the block after; the same code again, alone in its block, gives a vector at right
     angles to the block before, at inner and outer corners alike.
 
     Args:
-        comp: compensation as it stands.
+        comp: the present compensation.
         side: where the tool is from now on.
         radius_mm: its radius from now on; a negative one swaps the sides.
         place: the block, for a refusal.

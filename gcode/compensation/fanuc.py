@@ -25,7 +25,7 @@ from gcode.events import Block, Event, LinearMotion, Motion, Notice, Point
 
 #: Blocks without motion in the plane that the control can read over and still find the next motion.
 BLOCKS_READ_OVER = 2
-#: A compensated motion may be turned round by this much, mm, through rounding.
+#: A compensated motion may be reversed by this length, mm, through rounding.
 _ROUNDING_MM = 1e-6
 _ROUNDING_RAD = 1e-4
 
@@ -81,7 +81,7 @@ class FanucCompensation(Compensation):
         return replace(after, waiting=waiting, previous=self.offset, square=False)._up(motion), events
 
     def queue(self, event: Event) -> FanucCompensation:
-        """Puts an event behind what waits; see `gcode.compensation.queue`."""
+        """Queues an event after the waiting motion; see `gcode.compensation.queue`."""
         return replace(self, held=(*self.held, event))
 
     def end(self) -> tuple[tuple[Event, ...], Point]:
@@ -105,7 +105,7 @@ class FanucCompensation(Compensation):
         return (*events, after.frame.motion(replace(segment, start=after.at, end=end)))
 
     def change(self, side: Hand, radius_mm: float, *, place: Place, alone: bool) -> FanucCompensation:
-        """Goes on with another offset; see `gcode.compensation.change`."""
+        """Continues with another offset; see `gcode.compensation.change`."""
         offset = signed(side, finite_radius(radius_mm, place))
         turned = offset * self.previous < 0.0
         same = offset == self.offset
@@ -146,7 +146,7 @@ class FanucCompensation(Compensation):
     def _joined(
         self, waiting: Waiting, segment: Segment, points: tuple[complex, ...]
     ) -> tuple[FanucCompensation, tuple[Event, ...]]:
-        """The motion that waits, ending at the first of `points`, the way over the others, and what is held."""
+        """The waiting motion, ending at the first of `points`, the path over the others, and the held events."""
         height = self.frame.height(waiting.segment.motion.end_mm)
         first = waiting.segment.between(self.at, points[0])
         _in_direction(waiting, first)
@@ -162,7 +162,7 @@ class FanucCompensation(Compensation):
         return after, (*events, *more)
 
     def _corner_motion(self, waiting: Waiting, start: complex, end: complex, height: float) -> Motion:
-        """One stretch of the way round a corner, at the feed of the block before it."""
+        """One section of the path around a corner, at the feed of the block before it."""
         motion, corner = waiting.segment.motion, waiting.segment.end
         radius = abs(waiting.offset)
         round_it = self.joint == "arc" and not waiting.segment.rapid
@@ -180,7 +180,7 @@ class FanucCompensation(Compensation):
         return replace(after, waiting=None), events
 
     def _released(self) -> tuple[FanucCompensation, tuple[Event, ...]]:
-        """What was held, with motions along the normal at the place that the tool's centre has reached."""
+        """The held events, with motions along the normal at the position that the tool's centre has reached."""
         events = tuple(
             self.frame.motion(self.frame.segment(event).between(self.at, self.at))
             if isinstance(event, LinearMotion)
@@ -226,6 +226,6 @@ def _arc_refused(segment: Segment, what: str) -> GcodeError:
 def _blind(waiting: Waiting, blocks: int) -> Notice:
     text = (
         f"{blocks} blocks without motion in the plane of compensation follow, {BLOCKS_READ_OVER} are read over: "
-        "the tool ends beside this block, which may overcut or leave material at the corner"
+        "the tool ends off the offset path of this block, which may gouge or leave material at the corner"
     )
     return Notice(place=waiting.segment.motion.place, code="compensation-look-ahead", text=text)

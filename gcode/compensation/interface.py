@@ -1,4 +1,4 @@
-"""What the two controls' compensations have in common."""
+"""Interface of a cutter compensation, and the checks that both controls share."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ PLANE_NAMES: dict[int, str] = {17: "XY", 18: "ZX", 19: "YZ"}
 class Compensation(ABC):
     """Cutter compensation that is on: an immutable value, which each motion replaces by the next one.
 
-    The tool's centre stands at `at` in the plane once all that was given out has been done.
+    The tool's centre is at `at` in the plane once all events returned so far are executed.
 
     Attributes:
         frame: the plane, and how it is seen.
-        at: where the centre stands in the plane, mm.
-        height: where it stands along the plane's normal, mm.
+        at: position of the centre in the plane, mm.
+        height: its position along the plane's normal, mm.
     """
 
     frame: WorkingPlane

@@ -1,6 +1,6 @@
 """Cutter compensation as LinuxCNC's interpreter makes it.
 
-A straight entry ends beside its programmed end, an entry arc is replaced by one tangent to the same end. Convex
+A straight entry ends off its programmed end, an entry arc is replaced by one tangent to the same end. Convex
 corners are joined by an arc about the programmed corner, concave ones by moving the end of the motion before, which
 therefore waits for the next one. Corners of less than 0.05 rad are left as they are. All is written for a tool on the
 left; for one on the right the frame is mirrored.
@@ -76,7 +76,7 @@ class LinuxCncCompensation(Compensation):
         return self._arc(segment)
 
     def queue(self, event: Event) -> LinuxCncCompensation:
-        """Puts an event behind what waits; see `gcode.compensation.queue`."""
+        """Queues an event after the waiting motion; see `gcode.compensation.queue`."""
         return replace(self, held=(*self.held, event))
 
     def end(self) -> tuple[tuple[Event, ...], Point]:
@@ -125,23 +125,23 @@ class LinuxCncCompensation(Compensation):
         inward = unit(about - end)
         chord = (segment.start - end) / inward
         if abs(chord.real) < 1e-6 * abs(chord):
-            problem = f"no entry arc leads to {self.radius:.4f} mm beside the programmed arc"
+            problem = f"no entry arc leads to {self.radius:.4f} mm from the programmed arc"
             expected = "another start"
             raise GcodeError(segment.motion.place, "compensation-arc-entry", problem, expected)
         centre = end + inward * abs(chord) ** 2 / (2.0 * chord.real)
         return replace(segment, end=end, centre=centre)
 
     def _straight(self, segment: Segment) -> tuple[LinuxCncCompensation, tuple[Event, ...]]:
-        beside = 1j * self.radius * segment.direction_in
+        offset = 1j * self.radius * segment.direction_in
         turn, before = self._turn(segment), self._last.segment
         over_the_top = turn > math.pi - FLAT_RAD and before.turns < 0
         if turn < -FLAT_RAD or turn > math.pi + FLAT_RAD or over_the_top:
             after, events = self._flushed(self._meeting(segment), check=True)
         elif turn > FLAT_RAD:
-            after, events = self._rounded(segment, self.programmed + beside, check=True)
+            after, events = self._rounded(segment, self.programmed + offset, check=True)
         else:
             after, events = self._flushed(self.centre)
-        return after._hold(segment, segment.end + beside), events
+        return after._hold(segment, segment.end + offset), events
 
     def _arc(self, segment: Segment) -> tuple[LinuxCncCompensation, tuple[Event, ...]]:
         if segment.turns > 0:
@@ -175,7 +175,7 @@ class LinuxCncCompensation(Compensation):
     def _rounded(
         self, segment: Segment, corner: complex, *, check: bool
     ) -> tuple[LinuxCncCompensation, tuple[Event, ...]]:
-        """The motion before, and the way round a convex corner to `corner`, with the feed of the coming block."""
+        """The motion before, and the path around a convex corner to `corner`, at the feed of the coming block."""
         after, events = self._flushed(self.centre, check=check)
         if segment.rapid:
             joint: Motion = self.frame.line(segment.motion, after.at, corner, self.height)

@@ -41,7 +41,7 @@ class Corner:
 
     @property
     def bend(self) -> Bend:
-        """Kind of the corner. A path that turns right back goes round its end, as an acute one."""
+        """Kind of the corner. A path that reverses goes around its end, as an acute one."""
         d1, d2 = self.before.direction_out, self.after.direction_in
         towards, onward = cross(d1, d2) * self.offset, dot(d1, d2)
         if onward < 0.0 and abs(towards) <= _FLAT * abs(self.offset):
@@ -52,11 +52,11 @@ class Corner:
 
     @property
     def ending(self) -> complex:
-        """Beside the corner, at right angles to the block before."""
+        """The offset point of the corner at right angles to the block before."""
         return self.before.end + 1j * self.offset * self.before.direction_out
 
     def starting(self, offset: float) -> Points:
-        """Beside the corner, at right angles to the block after, at another offset."""
+        """The offset point of the corner at right angles to the block after, for another offset."""
         return (self.before.end + 1j * offset * self.after.direction_in,)
 
     @property
@@ -105,7 +105,8 @@ def _inner(corner: Corner) -> Points:
         return corner.starting(corner.offset)
     points = _meeting(corner)
     if not points:
-        problem = f"the paths at {abs(corner.offset):.4f} mm beside this block and the next do not meet"
+        offset = f"{abs(corner.offset):.4f} mm"
+        problem = f"the offset paths of this block and the next, {offset} from the programmed ones, do not meet"
         expected = "a corner that a tool of this radius reaches"
         raise GcodeError(before.motion.place, "compensation-no-intersection", problem, expected)
     return (min(points, key=lambda point: abs(point - before.end)),)

@@ -1,4 +1,4 @@
-"""Motions seen flat, in the plane of compensation: a point of the plane is a complex number.
+"""Motions projected onto the plane of compensation: a point of the plane is a complex number.
 
 The first axis of the plane (see `gcode.events.PLANE_AXES`) is the real, the second the imaginary one; ``1j * d`` is
 then the normal to the left of a direction ``d``. The coordinate along the plane's normal is called height.
@@ -13,7 +13,7 @@ from gcode.events import PLANE_AXES, ArcMotion, LinearMotion, Motion, Plane, Poi
 
 #: Points nearer to each other than this, mm, are one point: rounding of coordinates alone parts them.
 SAME_POINT_MM = 1e-7
-#: A full turn's two ends may be this far apart, mm, through the rounding of an offset; they are put together again.
+#: A full turn's two ends may be this far apart, mm, through the rounding of an offset; they are joined again.
 _CLOSES_MM = 1e-6
 
 
@@ -74,11 +74,11 @@ class Segment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkingPlane:
-    """How points in space are seen flat.
+    """The plane of compensation, and the projection of points and motions onto it.
 
     Attributes:
         plane: 17, 18 or 19.
-        mirrored: True where left and right are swapped, so that what holds on one side is written down once.
+        mirrored: True where left and right are swapped, so that a rule for one side is written once.
     """
 
     plane: Plane

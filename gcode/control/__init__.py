@@ -1,1 +1,1 @@
-"""The control's state as frozen values: modes, frames, variables, the table of modal groups."""
+"""The state of the control: modes, coordinate frames, offsets, variables, waiting motions; and a block as a command."""

@@ -1,4 +1,4 @@
-"""Words of a block -> `Command`: every code looked up, modal groups checked, every word claimed by what takes it."""
+"""Words of a block -> `Command`: codes looked up, modal groups checked, each word assigned to its code."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from gcode.dialects import Dialect
 from gcode.dialects.codes import CodeRule, Status
 from gcode.language.blocks import ParsedBlock, Word
 
-#: Phases that a plain word (no G or M) asks for.
+#: Phases that a plain word (no G or M) requests.
 _PHASE_OF_LETTER: Mapping[str, str] = {"F": "feed", "S": "speed", "T": "tool"}
-#: Phases that a word asks for only where it is free to stand in any block.
+#: Phases that a word requests only where the dialect allows it in any block.
 _PHASE_OF_FREE_LETTER: Mapping[str, str] = {"H": "length", "D": "radius"}
 #: Groups whose codes take the axis words of the blocks that follow.
 _MOTION_GROUPS = frozenset({"motion", "motion-cancel", "cycle"})
-#: Letters that are free to stand beside another one: which spindle an S is for.
+#: Letters that are allowed together with another one: the spindle that an S is for.
 _COMPANIONS: Mapping[str, str] = {"S": "$"}
 #: Motion codes that hold for their own block only.
 _NOT_MODAL = frozenset({"G5", "G5.1"})
@@ -41,7 +41,7 @@ class Command:
         block: the block as parsed.
         uses: its codes in their order.
         words: its other words by letter.
-        phases: what is to be done, in the dialect's order of execution.
+        phases: the phases to execute, in the dialect's order.
     """
 
     block: ParsedBlock
@@ -65,11 +65,11 @@ def code_name(letter: str, value: float) -> str:
 
 
 def resolve(state: State, block: ParsedBlock) -> Command:
-    """Looks up and checks what a block asks for; nothing is executed.
+    """Looks up and checks the codes and words of a block; nothing is executed.
 
     Raises:
         GcodeError: for an unknown or refused code or letter, two codes of one modal group, a letter given twice, a
-            word that nothing in the block takes, and axis words that two codes want or none does.
+            word that no code in the block takes, and axis words that two codes take or none does.
     """
     dialect = state.control.dialect
     uses: list[Use] = []
@@ -97,7 +97,7 @@ def _rule(dialect: Dialect, block: ParsedBlock, word: Word) -> CodeRule:
     """The rule of a code word; refuses what the dialect does not know or does not support."""
     rule = dialect.codes.get(code_name(word.letter, word.value))
     if rule is None:
-        problem = f"{word.text} is no code of the {dialect.name} dialect"
+        problem = f"{word.text} is not a code of the {dialect.name} dialect"
         raise block.error(word, "unknown-code", problem)
     if rule.status is Status.REFUSED:
         raise block.error(word, "unsupported-code", f"{word.text} ({rule.meaning}) is not supported")
@@ -115,7 +115,7 @@ def _check_groups(block: ParsedBlock, uses: list[Use]) -> None:
 
 
 def _claim_words(state: State, block: ParsedBlock, uses: list[Use], words: Mapping[str, Word]) -> bool:
-    """Finds for every word what takes it.
+    """Finds the code that takes each word.
 
     Returns:
         True where the words left to the active motion code make a motion.
@@ -154,11 +154,11 @@ def _check_needs(block: ParsedBlock, uses: list[Use], words: Mapping[str, Word])
         for letter in rule.needs:
             if letter not in words:
                 problem = f"{word.text} without {letter}"
-                raise block.error(word, "missing-word", problem, f"{' and '.join(rule.needs)} beside it")
+                raise block.error(word, "missing-word", problem, f"{' and '.join(rule.needs)} in the same block")
 
 
 def _check_rest(state: State, block: ParsedBlock, uses: list[Use], rest: list[Word]) -> None:
-    """Refuses the first word that nothing takes."""
+    """Refuses the first word that no code takes."""
     if not rest:
         return
     word, dialect = rest[0], state.control.dialect
@@ -172,7 +172,7 @@ def _check_rest(state: State, block: ParsedBlock, uses: list[Use], rest: list[Wo
 
 
 def _phases(dialect: Dialect, uses: list[Use], words: Mapping[str, Word], moves: bool) -> tuple[str, ...]:
-    """What the block asks for, in the dialect's order."""
+    """The phases of the block, in the dialect's order."""
     asked = {_PHASE_OF_LETTER[letter] for letter in words if letter in _PHASE_OF_LETTER}
     asked.update(use.rule.phase for use in uses)
     for letter, phase in _PHASE_OF_FREE_LETTER.items():

@@ -1,4 +1,4 @@
-"""Program coordinates and machine coordinates: one affine frame in one spot.
+"""Coordinate frames: program coordinates to machine coordinates and back.
 
     machine = zero + M (program)
 
@@ -17,7 +17,7 @@ Matrix: TypeAlias = tuple[Point, Point, Point]
 
 ORIGIN: Point = (0.0, 0.0, 0.0)
 _IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-#: Two places nearer than this are one. No control resolves better than 1e-4 mm, and sums of a program's numbers in
+#: Two positions nearer than this are one. No control resolves better than 1e-4 mm, and sums of a program's numbers in
 #: doubles stay within 1e-9 mm over a machine's travel.
 SAME_POSITION_MM = 1e-6
 #: Relative difference of two scale factors that counts as none.
@@ -26,7 +26,7 @@ _SAME_SCALE = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoordinateFrame:
-    """Where program coordinates lie in machine coordinates.
+    """Program coordinates in machine coordinates: a zero, and a matrix where they are transformed.
 
     Attributes:
         zero_mm: program zero in machine coordinates.
@@ -56,12 +56,12 @@ class CoordinateFrame:
 
     @property
     def keeps_lengths(self) -> bool:
-        """Whether program lengths are lengths of the machine: no scaling, but perhaps turned or mirrored."""
+        """Whether program lengths are lengths of the machine: no scaling, but perhaps rotation or mirror image."""
         columns = zip(*self.matrix, strict=True) if self.matrix is not None else ()
         return all(abs(math.hypot(*column) - 1.0) <= _SAME_SCALE for column in columns)
 
     def plane_scale(self, plane: int) -> float | None:
-        """Signed factor by which the plane's lengths grow, negative where it is turned over; None where it is uneven.
+        """Signed scale of the plane, negative where it is mirrored; None where the scale is not uniform.
 
         Raises nothing: a frame that tilts the plane does not exist here.
         """
@@ -109,12 +109,12 @@ class Transform:
     centre_mm: Point
 
     def of(self, point: Point) -> Point:
-        """Where it takes a point."""
+        """The image of a point."""
         return plus(self.centre_mm, _times(self.matrix, difference(point, self.centre_mm)))
 
 
 def rotation(plane: int, angle_deg: float, centre_mm: Point = ORIGIN) -> Transform:
-    """Turns a plane about a point, counter-clockwise seen from the plane's positive normal."""
+    """Rotation of a plane about a point, counter-clockwise seen from the plane's positive normal."""
     return Transform(matrix=_rotated(plane, angle_deg), inverse=_rotated(plane, -angle_deg), centre_mm=centre_mm)
 
 
@@ -140,7 +140,7 @@ def _matrix(rows: list[list[float]]) -> Matrix:
 
 
 def scaling(factors: Point, centre_mm: Point = ORIGIN) -> Transform:
-    """Scales along the axes about a point; a factor of -1 is a mirror image. No factor may be 0."""
+    """Scaling along the axes about a point; a factor of -1 is a mirror image. No factor may be 0."""
     forward = _matrix([[factors[r] if r == k else 0.0 for k in range(3)] for r in range(3)])
     back = _matrix([[1.0 / factors[r] if r == k else 0.0 for k in range(3)] for r in range(3)])
     return Transform(matrix=forward, inverse=back, centre_mm=centre_mm)

@@ -1,4 +1,4 @@
-"""The control's memory between two blocks, as immutable values: a refused block cannot leave half a change behind."""
+"""The state of the control between two blocks, as immutable values: a refused block leaves it unchanged."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EXTRA_AXES = "ABCUVW"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Control:
-    """What does not change while a program runs: the dialect and the machine's settings."""
+    """The constant part of the state: the dialect and the machine's settings."""
 
     dialect: Dialect
     settings: MachineSettings
@@ -66,11 +66,11 @@ class Setup:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Modes:
-    """Modal values that decide how words are read.
+    """Modal values that determine how words are read.
 
     Attributes:
         motion: active motion code, ``G0`` to ``G3``, a canned cycle, or ``G80`` for none.
-        base_motion: the last motion code that was no canned cycle.
+        base_motion: the last motion code that was not a canned cycle.
         absolute: True for G90.
         unit_mm: length of the program's unit: 1 for G21, 25.4 for G20.
         absolute_centres: True where I, J, K are coordinates of an arc's centre.
@@ -85,7 +85,7 @@ class Modes:
         program: number of the O word, None before it.
         return_to_r: True for G99.
         in_cycle: True once a block was run in the active canned cycle's mode.
-        cycle_words: what canned cycles remember, by letter.
+        cycle_words: words that canned cycles keep, by letter.
         rigid_tapping: True after M29, until the cycle ends.
         initial_level_mm: level along the plane's normal (program coordinates) that G98 returns to.
         via_mm: intermediate point of the last return to a reference point, None before it.
@@ -131,7 +131,7 @@ class Modes:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class State:
-    """Everything that the next block depends on, but for variables and the place in the program.
+    """Everything that the next block depends on, except variables and the line in the program.
 
     Attributes:
         control: dialect and settings.
@@ -225,7 +225,7 @@ def _point(values: tuple[float, ...]) -> Point:
 
 
 def same_position(a: Point, b: Point) -> bool:
-    """True where two points are one as far as any control can tell."""
+    """True where two points differ by less than any control resolves."""
     return all(abs(p - q) <= SAME_POSITION_MM for p, q in zip(a, b, strict=True))
 
 

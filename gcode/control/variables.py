@@ -32,7 +32,7 @@ class ControlVariables(Protocol):
 
 
 class Variables:
-    """Values of variables while a program runs; it is its own `Scope`.
+    """Values of variables while a program runs; implements `Scope`.
 
     Args:
         language: whose rules hold.

@@ -11,7 +11,7 @@ from gcode.cycles.strokes import Tool
 from gcode.cycles.words import check_needed, has_axis, read_words
 
 _SPINDLE = {-1: "counter-clockwise (M4)", 0: "not at all (M5)", 1: "clockwise (M3)"}
-#: Levels closer than this, in the program's unit, are one level: no motion is made for what rounding leaves.
+#: Levels closer than this, in the program's unit, are one level: rounding errors cause no motion.
 SAME_LEVEL = 1e-9
 _FEEDS = frozenset({Act.FEED_BOTTOM, Act.PECK, Act.CHIP_BREAK, Act.TAP_BOTTOM})
 
@@ -32,7 +32,7 @@ def run_cycle(rules: CycleRules, call: CycleInput) -> CycleOutput:
     """
     cycle = _cycle(rules, call.code)
     if rules.needs_axis and not has_axis(call):
-        problem = f"{cycle.code} ({cycle.meaning}) stands in a block without an axis word"
+        problem = f"{cycle.code} ({cycle.meaning}) is in a block without an axis word"
         raise CycleError("cycle-missing-word", problem, " or ".join(call.axes))
     words = read_words(rules, cycle, call)
     if not has_axis(call) and "R" not in call.words:
@@ -76,7 +76,7 @@ def _check_length(rules: CycleRules, call: CycleInput, hole: Hole, repeats: int)
 
 
 def _tool(rules: CycleRules, cycle: Cycle, call: CycleInput, hole: Hole) -> Tool:
-    """The tool before the first hole. A tap whose spindle stands still can only be a rigid one."""
+    """The tool before the first hole. A tap that begins with the spindle stopped can only be rigid."""
     rigid = cycle.forward != 0 and (call.rigid or rules.always_rigid or call.spindle_direction == 0)
     return Tool(rules, cycle, hole, axes=call.axes, at=call.position, spindle=call.spindle_direction, rigid=rigid)
 
@@ -104,7 +104,7 @@ def _direct(tool: Tool, call: CycleInput, repeats: int) -> Position:
 
 
 def _lifting(tool: Tool, call: CycleInput, repeats: int) -> Position:
-    """Up to R first where the initial level is below it, then as the control takes the tool to stand."""
+    """Retracts to R first where the initial level is below it; the control then continues from its own position."""
     r, clear = tool.hole.r, tool.hole.clear
     level = call.position[2]
     if call.initial_level < r - SAME_LEVEL:

@@ -1,4 +1,4 @@
-"""The levels of one hole, its pecks, its dwell and its shift: everything that the strokes need to know."""
+"""The levels of one hole, its pecks, its dwell and its shift: the data of its strokes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Hole:
 
 
 def hole_of(rules: CycleRules, cycle: Cycle, call: CycleInput, data: Mapping[str, float]) -> Hole:
-    """The hole that the words ask for.
+    """The hole that the words describe.
 
     Raises:
         CycleError: where R lies below the bottom and the control refuses that, or a peck has no depth.
@@ -52,7 +52,9 @@ def hole_of(rules: CycleRules, cycle: Cycle, call: CycleInput, data: Mapping[str
     bottom = _level(rules, call, data, BOTTOM, r)
     if rules.refuses_r_below_bottom and r < bottom:
         normal = call.axes[2]
-        raise CycleError("cycle-level", f"R at {r:g} mm lies below the bottom {normal}{bottom:g} mm", "R above it", "R")
+        raise CycleError(
+            "cycle-level", f"R at {r:g} mm lies below the bottom {normal}{bottom:g} mm", "R above the bottom", "R"
+        )
     initial = max(call.initial_level, r) if rules.lift_first else call.initial_level
     return Hole(
         r=r,
@@ -115,7 +117,7 @@ def _peck(rules: CycleRules, data: Mapping[str, float]) -> tuple[float, float, f
         return peck
     size = abs(data["Q"]) if rules.ignores_sign_of_q else data["Q"]
     if size <= 0.0:
-        raise CycleError("cycle-peck", f"Q{data['Q']:g} is no depth of a peck", "Q greater than 0", "Q")
+        raise CycleError("cycle-peck", f"Q{data['Q']:g} is not a peck depth", "Q greater than 0", "Q")
     return (size, 0.0, size)
 
 

@@ -1,4 +1,4 @@
-"""What a canned cycle is run on, and what comes of it."""
+"""Input and output of a canned cycle."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ class CycleInput:
 
     Attributes:
         code: the cycle, e.g. ``G81``, from this block or from one before it.
-        words: this block's words by letter. X, Y, Z, R, I, J, Q, and K where it is no repeat, are lengths in mm;
-            P, L and a repeating K are as written. Letters that belong to no cycle (F, S, N...) are not looked at.
-        sticky: `CycleOutput.sticky` of the last block run in a cycle mode; empty before the first. A control that
-            forgets words when the mode is left is told so by `first_of_mode`, so nothing need be cleared.
-        position: the controlled point, as the control believes it to stand.
+        words: this block's words by letter. X, Y, Z, R, I, J, Q, and K that is not a repeat
+            count, are lengths in mm; P, L and a repeating K are as written. Other letters (F, S, N...) are ignored.
+        sticky: `CycleOutput.sticky` of the last block run in a cycle mode; empty before the first. For controls
+            that forget words when the mode is left, `first_of_mode` marks this, so nothing need be cleared.
+        position: the controlled point, as the control knows it.
         axes: letters of the plane's first and second axis and of its normal: ``XYZ`` for G17, ``ZXY``, ``YZX``.
         absolute: True for G90.
         return_to_r: True for G99.
-        initial_level: coordinate along the normal where the tool stood when the cycle mode was entered.
+        initial_level: coordinate along the normal of the tool when the cycle mode was entered.
         spindle_direction: +1 for M3, -1 for M4, 0 stopped.
         feed_known: a feed was programmed.
         first_of_mode: no cycle was active before this block.
-        rigid: rigid tapping was asked for (M29); the spindle then stands still before and after the tap.
+        rigid: rigid tapping is requested (M29); the spindle is then stopped before and after the tap.
         unit_mm: length of the program's unit, 25.4 in inches.
         pointed: letters of this block's words that are written with a decimal point.
     """
@@ -52,12 +52,12 @@ class CycleInput:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CycleOutput:
-    """What a block in a cycle mode does.
+    """The steps of a block in a cycle mode.
 
     Attributes:
-        sticky: to be handed in with the next block in a cycle mode.
-        steps: what is done, all repeats, in order; empty where the block drills nothing.
-        position: where the control believes the controlled point to be afterwards. It differs from the last
+        sticky: input of the next block in a cycle mode.
+        steps: steps of all repeats, in order; empty where the block drills nothing.
+        position: the controlled point afterwards, as the control knows it. It differs from the last
             motion's end only after LinuxCNC's G88, which leaves the retraction to the operator, and after its
             tapping in G18 and G19.
     """

@@ -1,4 +1,4 @@
-"""Canned cycles of a control as data: what each does in the hole, which words it takes, how the words are read."""
+"""Canned cycles of a control as data: the steps in the hole, the words each takes, and how they are read."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Literal
 
 
 class Act(Enum):
-    """One thing a cycle does once the tool stands over the hole; ``clear`` is the level it returns to."""
+    """One step of a cycle with the tool over the hole; ``clear`` is the level it returns to."""
 
     FEED_BOTTOM = auto()
     FEED_R = auto()
@@ -46,18 +46,18 @@ class Cycle:
 
     Attributes:
         code: canonical name, e.g. ``G83``.
-        meaning: what it is, in words, for messages and reference tables.
-        acts: what it does in the hole, in this order.
+        meaning: its meaning in words, for messages and reference tables.
+        acts: its steps in the hole, in order.
         takes: letters of words of its own, besides the axes, R and the repeat.
         needs: those of them that must be given, now or by an earlier block.
         inherits: those that are taken from any cycle before, also from one of another code or mode.
         shift: it moves off the hole's axis, by Q or by I, J, K.
         approach: the tool is brought to R before the acts.
-        returns_to_initial: it always returns to the initial level, whatever G98 and G99 say.
+        returns_to_initial: it always returns to the initial level, whatever G98 and G99 state.
         repeats: it takes the repeat word.
-        forward: direction in which the spindle turns a tap in, 0 where it is no tapping cycle.
+        forward: direction in which the spindle turns a tap in, 0 where it is not a tapping cycle.
         spindle: directions in which the spindle may turn when it starts.
-        unsupported: words that are refused by name, with what they would ask for.
+        unsupported: words that are refused by name, with their meaning.
     """
 
     code: str
@@ -102,8 +102,8 @@ class CycleRules:
     Attributes:
         name: the control, for messages.
         cycles: its cycles by code.
-        absent: codes of the family that are no drilling cycle of this control, with what they are.
-        repeat_letters: letters of the word that says how often a block is repeated.
+        absent: codes of the family that are not drilling cycles of this control, with their meaning.
+        repeat_letters: letters of the word that repeats a block.
         stores_zero_repeats: a repeat of 0 stores the words and drills nothing; else it is refused.
         memory: words hold for all cycles of the ``mode``, until it is left, or only for blocks of the same ``code``.
         levels_keep_mode: R and the bottom stay absolute or incremental as they were given; else the distance mode
@@ -116,7 +116,7 @@ class CycleRules:
         ignores_sign_of_q: a negative Q is taken as its size; else it is refused.
         stored: letters that a cycle keeps for others though it does not use them; all other unused ones are refused.
         lift_first: a tool below R goes up to it before it moves in the plane, from the second hole of a block on
-            the tool is taken to be at the level of return, and the control goes on from there whatever was moved.
+            the tool is taken to be at the level of return, and the control continues from there whatever was moved.
         empty_moves: motions to where the tool already is are commanded too.
         dwell: how P is read.
         retract_mm: how far a chip-breaking peck (G73) goes back.
@@ -125,7 +125,7 @@ class CycleRules:
         above_r_mm: how far above R a peck is cleared.
         peck_tolerance_mm: a last peck as short as this is none of its own.
         shift_direction: direction of the shift by Q along the plane's first and second axis.
-        always_rigid: tapping is rigid without a word that says so.
+        always_rigid: tapping is rigid without M29.
         restart: direction in which a cycle that stopped the spindle starts it again; None for the one before.
         tap_follows_spindle: the feed of a tap follows the spindle's angle; else it is a plain feed.
         tap_order: by the letter of the plane's normal, which of (first, second, normal) the control puts into each of

@@ -1,4 +1,4 @@
-"""What a canned cycle does, one step after another, in the coordinates of the plane it is run in."""
+"""Steps of a canned cycle, in coordinates of its plane."""
 
 from __future__ import annotations
 

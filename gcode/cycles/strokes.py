@@ -1,4 +1,4 @@
-"""What each act of a cycle does: the tool over one hole, and the steps it makes there."""
+"""Steps that each act of a cycle makes with the tool over one hole."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Tool:
         cycle: the cycle.
         hole: the levels, the same for all holes of a block.
         axes: letters of the plane's axes and of its normal.
-        at: where it stands, as a position in the plane's coordinates.
+        at: its position in coordinates of the plane.
         spindle: direction in which the spindle turned before the cycle.
         rigid: the cycle starts and stops the spindle itself.
     """
@@ -45,7 +45,7 @@ class Tool:
         self.steps: list[Step] = []
 
     def go(self, to: Position, *, rapid: bool, tapping: bool = False) -> None:
-        """Moves to a point; where it already stands there, only if the control commands such motions."""
+        """Moves to a point; where the tool is there already, only if the control commands such motions."""
         if self.rules.empty_moves or to != self.at:
             self.steps.append(Move(*to, rapid=rapid, tapping=tapping))
         self.at = to
@@ -74,7 +74,7 @@ class Tool:
         return self.hole.r + up * self.rules.above_r_mm
 
     def work(self) -> None:
-        """Does the cycle's acts where the tool stands."""
+        """Carries out the acts of the cycle at the present position."""
         for act in self.cycle.acts:
             _DOES[act](self)
 

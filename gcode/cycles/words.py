@@ -1,4 +1,4 @@
-"""The words of a cycle: which may stand, which must, and what earlier blocks gave."""
+"""The words of a cycle: allowed words, required words, and those kept from earlier blocks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from gcode.cycles.rules import Cycle, CycleRules
 
 #: Key of the bottom's coordinate, which is a Z, Y or X word by the plane.
 BOTTOM = "bottom"
-#: Behind the key of a level: 1 where it was given with G91.
+#: Suffix of the key of a level: 1 where it was given with G91.
 INCREMENTAL = ".incremental"
 _CODE = "code"
 _LENGTHS = frozenset({"R", BOTTOM, "Q", "I", "J", "K"})
@@ -63,7 +63,7 @@ def read_words(rules: CycleRules, cycle: Cycle, call: CycleInput) -> CycleWords:
 
 
 def _over(before: Mapping[str, float], dropped: str, new: Mapping[str, float]) -> Mapping[str, float]:
-    """New numbers over those from before; a peck or shift by Q replaces one by I, J, K, and the other way round."""
+    """New numbers over those from before; a peck or shift by Q replaces one by I, J, K, and vice versa."""
     return MappingProxyType({**{key: value for key, value in before.items() if key not in tuple(dropped)}, **new})
 
 
@@ -93,7 +93,7 @@ def _missing(rules: CycleRules, cycle: Cycle, letter: str, wanted: str) -> Cycle
 
 
 def _given(rules: CycleRules, call: CycleInput) -> dict[str, float]:
-    """This block's words by key. A repeat is none: it holds for its block alone."""
+    """This block's words by key. A repeat count is not included: it holds for its block alone."""
     given = {letter: call.words[letter] for letter in _OWN if letter in call.words}
     for letter in rules.repeat_letters:
         given.pop(letter, None)
@@ -119,11 +119,11 @@ def _remembers(rules: CycleRules, call: CycleInput) -> bool:
 
 
 def _seconds(rules: CycleRules, call: CycleInput) -> float:
-    """The dwell that P asks for."""
+    """The dwell time of P."""
     number, unit = call.words["P"], rules.dwell
     if number < 0.0 or not math.isfinite(number) or (unit.whole and number != int(number)):
         wanted = "a whole number of milliseconds" if unit.whole else "a time of 0 or more"
-        raise CycleError("cycle-dwell", f"P{number:g} is no dwell", wanted, "P")
+        raise CycleError("cycle-dwell", f"P{number:g} is not a dwell time", wanted, "P")
     pointed = unit.pointed_seconds is not None and "P" in call.pointed
     return number * (unit.pointed_seconds if pointed and unit.pointed_seconds is not None else unit.seconds)
 
@@ -139,7 +139,9 @@ def _repeats(rules: CycleRules, cycle: Cycle, call: CycleInput) -> int:
         raise CycleError("cycle-repeat", "K and L are both in the block", "one of them", letters[1])
     least = 0 if rules.stores_zero_repeats else 1
     if not math.isfinite(number) or number != int(number) or number < least:
-        raise CycleError("cycle-repeat", f"{letter}{number:g} is no repeat", f"a whole number from {least} on", letter)
+        raise CycleError(
+            "cycle-repeat", f"{letter}{number:g} is not a repeat count", f"a whole number of {least} or more", letter
+        )
     return int(number)
 
 

@@ -1,7 +1,7 @@
-"""The tables of G and M codes: which modal group each is of, what is done with it, and which words it takes.
+"""The tables of G and M codes: the modal group, the treatment and the words of each.
 
-A rule is data. The interpreter looks codes up and never asks for one by an if-chain, so a dialect is these tables
-with its own rows put over them (see `dialects`), and a code that stands in no table is refused as unknown.
+A rule is data. The interpreter looks codes up and has no if-chain over them, so a dialect consists of these
+tables with its own rows in place of some (see `dialects`), and a code that is in no table is refused as unknown.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 
 class Status(Enum):
-    """What becomes of a code."""
+    """Treatment of a code."""
 
     EXECUTED = "executed"
     NEUTRAL = "cancels or sets what always holds here, so it changes nothing"
@@ -27,13 +27,13 @@ class CodeRule:
 
     Attributes:
         code: canonical name, e.g. ``G1``, ``G54.1``.
-        groups: modal groups; two codes that share one cannot stand in one block.
-        status: what becomes of it.
+        groups: modal groups; two codes that share one are not allowed in one block.
+        status: its treatment.
         phase: step in the order of execution of a block (`Dialect.order`); empty where nothing is to be done.
         letters: letters of the words that it takes; ``*`` for every letter that nothing else takes.
-        needs: letters of the words that must stand beside it.
+        needs: letters of the words that must be in the same block.
         takes_axes: True where its axis words are its own, so that the block has no motion besides.
-        meaning: what it is, in words, for messages and reference tables.
+        meaning: its meaning in words, for messages and reference tables.
     """
 
     code: str
@@ -86,7 +86,7 @@ def owning(groups: str, phase: str, meanings: Mapping[str, str], letters: str) -
 
 
 def neutral(groups: str, meanings: Mapping[str, str], letters: str = "") -> dict[str, CodeRule]:
-    """Rows of codes that ask for what always holds here."""
+    """Rows of codes that request a mode that always holds here."""
     return rules(groups, Status.NEUTRAL, meanings, letters=letters)
 
 

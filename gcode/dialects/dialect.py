@@ -1,7 +1,7 @@
-"""What a control's language is, as a frozen table.
+"""The language of a control as a frozen table.
 
-Differences between controls are fields and rows, each with the rule it stands for; the code that interprets asks
-these and never for a dialect's name.
+Differences between controls are fields and rows, each with its rule; the interpreter reads these and never the name
+of a dialect.
 """
 
 from __future__ import annotations
@@ -60,15 +60,15 @@ class DwellWord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Dialect:
-    """A control, as far as its language goes.
+    """The language of a control: its codes, words, cycles, variables and rules.
 
     Attributes:
         name: as users and job files write it.
         codes: its G and M codes.
         order: phases of one block in the order of execution.
-        free_letters: letters that may stand in any block.
-        refused_letters: letters that are understood and not supported, with what they are.
-        extra_axes: letters of further axes whose positions are kept and told.
+        free_letters: letters that are allowed in any block.
+        refused_letters: letters that are known and not supported, with their meaning.
+        extra_axes: letters of further axes, whose positions are kept and reported.
         whole_block_numbers: an N word is a whole number.
         corner_letters: letters that cut or round the corner between two feed motions.
         increment_letters: letters whose numbers count least increments where they have no decimal point and the
@@ -81,21 +81,21 @@ class Dialect:
         not_compensated: phases whose codes are refused while cutter compensation is on.
         compensation_defaults_to_tool: G41/G42 without D take the radius of the tool in the spindle.
         data_kinds: what G10 writes for each L.
-        additional_by_l20: G10 L20 writes additional work offsets; else the offset under which the tool is where the
-            words say.
+        additional_by_l20: G10 L20 writes additional work offsets; else the offset under which the tool is at the
+            programmed position.
         tool_defaults_to_present: M6 without any T puts in the tool that is in; else it is refused.
         file_end_returns: a subprogram's file that ends without M99 returns; else it is refused.
         subprograms: O words begin programs that M98 calls.
         packed_calls: M98 P31000 calls O1000 three times.
         explicit_code_moves: a block with a motion code and no axis words is a motion to where the tool is.
-        power_on_return_to_r: G99 holds before the program says otherwise.
+        power_on_return_to_r: G99 holds before the program states otherwise.
         tools_must_be_known: T names a row of the tool table, where one is given.
         dwell: words of G4.
         length_word_is_modal: an H without G43 changes the active length offset, and G43 without H uses the last one.
         length_defaults_to_tool: G43 without H, or with H0, takes the entry of the tool in the spindle.
         length_moves_all_axes: a tool offset has x and y besides its length.
         incremental_adds_length: with G91 a Z word after a change of the length offset moves by the change too.
-        one_shot_with_motion: G0 to G3 beside G28 only sets the mode; else such a block is refused.
+        one_shot_with_motion: G0 to G3 in a block with G28 only sets the mode; else such a block is refused.
         machine_moves_rapid: G53 always moves at rapid; else G0 or G1 must be active and decides.
         reference_all_axes: G28 without axes returns all of them; else it is refused.
         reference_cancels_length: G28 and G30 end the tool length offset.
@@ -105,7 +105,7 @@ class Dialect:
         first_alarm: number of the alarm that #3000 = 0 would raise.
         helix_feed_along_arc: F of a helix is the feed along its arc in the plane; else along its path.
         shift_is_rotated: G92 and G52 share one shift, and it lies inside the work offset's rotation.
-        semicolon_ends_block: a semicolon is an end of block, so words behind it are the next block.
+        semicolon_ends_block: a semicolon is an end of block, so words after it are the next block.
         leader: text before the first percent sign is a leader to be skipped, wherever that percent sign is.
         arc_tolerance: for arcs with a programmed centre.
         radius_tolerance_mm: by how much an R may be shorter than half the chord.

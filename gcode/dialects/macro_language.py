@@ -19,7 +19,7 @@ _LARGEST_BITS = 1 << 53
 
 
 class MathError(Exception):
-    """An operation that has no result: what was asked, and what is allowed."""
+    """An operation that has no result: the operation, and the values allowed."""
 
     def __init__(self, problem: str, expected: str) -> None:
         self.problem = problem
@@ -34,7 +34,7 @@ class MacroLanguage:
     Attributes:
         name: for messages: ``fanuc``, ``linuxcnc`` or ``none``.
         operators: priority (higher binds tighter) and function of each binary operator.
-        comparisons: those of them that tell vacant from 0.
+        comparisons: those of them that distinguish vacant from 0.
         functions: functions of one bracketed argument by name.
         pairs: functions of two arguments in one bracket, with a comma between.
         refused: functions that are known and not supported.
@@ -164,7 +164,7 @@ def _arctangent_turn(a: float, b: float) -> float:
 
 
 def _arcsine_turn(value: float) -> float:
-    """270 to 90 degrees, by way of 0."""
+    """270 to 90 degrees, through 0."""
     angle = _arc(math.asin, "ASIN")(value)
     return angle + 360.0 if angle < 0.0 else angle
 

@@ -80,12 +80,12 @@ def run(
     dialect: Dialect | str = FANUC,
     settings: MachineSettings | None = None,
 ) -> Iterator[Event | PlainBatch]:
-    """Runs a program as `interpret` does, and leaves runs of plain straight motions together for speed.
+    """Runs a program as `interpret` does, but keeps runs of plain straight motions together, for speed.
 
     Arguments and errors as for `interpret`.
 
     Yields:
-        Events, and `PlainBatch`es that stand for the events of many blocks.
+        Events, and `PlainBatch`es that represent the events of many blocks.
     """
     program = _program(source, file)
     _refuse_foreign(program)

@@ -40,10 +40,10 @@ def execute(session: Session, block: ParsedBlock, statement: MacroStatement) -> 
 
 
 def _then(session: Session, block: ParsedBlock, statement: IfThen) -> None:
-    """What stands behind THEN: one assignment, and no words."""
+    """The statement after THEN: one assignment, and no words."""
     if statement.then.words or len(statement.then.assignments) != 1:
         shown = statement.then.words[0].text if statement.then.words else "nothing"
-        raise block.error_at(statement.column, "bad-statement", f"{shown} behind THEN", "one assignment, #i = value")
+        raise block.error_at(statement.column, "bad-statement", f"{shown} after THEN", "one assignment, #i = value")
     evaluated(session, statement.then)
 
 
@@ -59,7 +59,7 @@ def _goto(session: Session, block: ParsedBlock, statement: Goto) -> None:
 
 
 def jump_to_label(session: Session, block: ParsedBlock, value: float | None, column: int) -> None:
-    """Goes on at the block N`value` of the present program.
+    """Continues at the block N`value` of the present program.
 
     Raises:
         GcodeError: where the number is none, or the program has no such block.

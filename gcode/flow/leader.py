@@ -1,4 +1,4 @@
-"""A leader: text before the first percent sign of a file that is no program."""
+"""A leader: text before the first percent sign of a file that is not part of the program."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from gcode.errors import GcodeError, Place
 from gcode.language.block_parser import parse_line
 from gcode.language.program import Program, Spot
 
-#: A percent sign that ends a leader is looked for in so many lines.
+#: Lines that are searched for the percent sign that ends a leader.
 LEADER_LINES = 200
 
 
 def leader_end(program: Program, dialect: Dialect) -> Spot | None:
-    """Where the program begins after a leader: the line of the percent sign; None where there is no leader.
+    """Finds the beginning of the program after a leader: the line of the percent sign; None where there is no leader.
 
     A percent sign ends a leader where more text follows it and none of the lines before it, read as a block, holds a
     word; otherwise it is the end of the program.

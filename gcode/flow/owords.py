@@ -33,7 +33,7 @@ def _label(session: Session, block: ParsedBlock, word: OWord) -> str:
         raise block.error_at(word.column, "o-word", "an O-word without a label", "O and a number or <name>")
     value = block.value_of(word.label_value, session.variables.scope())
     if value is None or value != int(value) or value < 0:
-        raise block.error_at(word.column, "o-word", f"O{value} is no label", "a whole number of 0 or more")
+        raise block.error_at(word.column, "o-word", f"O{value} is not a label", "a whole number of 0 or more")
     return str(int(value))
 
 
@@ -54,7 +54,7 @@ def _error(block: ParsedBlock, word: OWord, label: str, expected: str) -> GcodeE
 
 
 def _next(session: Session, block: ParsedBlock, word: OWord, label: str, keywords: tuple[str, ...]) -> OLine:
-    """The next line of the same label that says one of these."""
+    """The next line of the same label with one of these keywords."""
     for line in session.level.program.o_lines_after(session.line_offset):
         if line.label == label and line.keyword in keywords:
             return line
@@ -64,7 +64,7 @@ def _next(session: Session, block: ParsedBlock, word: OWord, label: str, keyword
 
 
 def _sub(session: Session, block: ParsedBlock, word: OWord) -> None:
-    """A definition met on the way is passed over; the first line of a call is this line too."""
+    """A definition in the course of a program is skipped; a call begins at this line too."""
     label = _label(session, block, word)
     level = session.level
     if level.kind == "routine" and level.start.offset == session.line_offset:
@@ -93,7 +93,7 @@ def _call(session: Session, block: ParsedBlock, word: OWord) -> None:
         raise block.error_at(word.column, "o-word", f"a call with {len(arguments)} arguments", f"{_ARGUMENTS} at most")
     found = session.library.routine(session.level.program, label)
     if found is None:
-        expected = f"o<{label}> sub in this file, or a file {label}.ngc beside it or on the search path"
+        expected = f"o<{label}> sub in this file, or a file {label}.ngc in the same folder or on the search path"
         raise block.error_at(word.column, "unknown-program", f"subroutine o<{label}> is not found", expected)
     program, spot = found
     level = Level(
@@ -115,7 +115,7 @@ def _if(session: Session, block: ParsedBlock, word: OWord) -> None:
 
 
 def _to_branch(session: Session, block: ParsedBlock, word: OWord, label: str, offset: int) -> None:
-    """Goes on at the first branch behind `offset` whose condition holds."""
+    """Continues at the first branch after `offset` whose condition holds."""
     for line in session.level.program.o_lines_after(offset):
         if line.label != label or line.keyword not in ("elseif", "else", "endif"):
             continue
@@ -130,7 +130,7 @@ def _to_branch(session: Session, block: ParsedBlock, word: OWord, label: str, of
 
 
 def _past_if(session: Session, block: ParsedBlock, word: OWord) -> None:
-    """An else or elseif met on the way ends the branch before it."""
+    """An else or elseif that is reached ends the branch before it."""
     label = _label(session, block, word)
     session.level.jump(session.spot_after(_next(session, block, word, label, ("endif",)).spot))
 
@@ -180,7 +180,7 @@ def _end_while(session: Session, block: ParsedBlock, word: OWord) -> None:
 
 
 def _do(_session: Session, _block: ParsedBlock, _word: OWord) -> None:
-    """The head of a do loop: its end, a while, does all."""
+    """The head of a do loop: its end, a while, does everything."""
 
 
 def _repeat(session: Session, block: ParsedBlock, word: OWord) -> None:

@@ -1,7 +1,7 @@
-"""How `check` goes on after a refused block, so that one mistake is not told again in every block that follows.
+"""Recovery of `check` after a refused block, so that one error is not reported again in every block that follows.
 
-The refused words are left out, what remains of the block sets its modes, and the tool is taken to stand where the
-block would have led it. Nothing of this is ever executed: `interpret` ends at the first refusal.
+The refused words are omitted, the rest of the block sets its modes, and the tool is assumed to be at the end of the
+block. Nothing of this is ever executed: `interpret` ends at the first error.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from gcode.flow.step import PHASES
 from gcode.language.blocks import ParsedBlock
 from gcode.phases.end_points import moved_to, programmed_end, settled
 
-#: Feed that is taken to hold once a missing one has been reported, mm/min.
+#: Feed that is assumed once a missing one has been reported, mm/min.
 _ASSUMED_FEED = 1.0
-#: Words that are left out of a block; one with more mistakes tells nothing.
-_MOST_LEFT_OUT = 50
+#: Most words that are omitted from a block; one with more errors is skipped.
+_MOST_OMITTED = 50
 
 
 def recovered(state: State, block: ParsedBlock, error: GcodeError) -> State:
-    """The state to go on from after `error` refused `block`; `state` is that before the block."""
+    """The state to continue from after `error` refused `block`; `state` is that before the block."""
     if error.code == "missing-feed":
         state = state.with_modes(feed=_ASSUMED_FEED)
     command = _without_refused_words(state, block)
@@ -40,9 +40,9 @@ def recovered(state: State, block: ParsedBlock, error: GcodeError) -> State:
 
 
 def _without_refused_words(state: State, block: ParsedBlock) -> Command | None:
-    """The block's command once the words that stand in its way are left out, None where that does not help."""
+    """The block's command without its refused words, None where that does not help."""
     words = block.words
-    for _ in range(_MOST_LEFT_OUT):
+    for _ in range(_MOST_OMITTED):
         try:
             return resolve(state, replace(block, words=words))
         except GcodeError as error:

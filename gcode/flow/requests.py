@@ -42,11 +42,11 @@ _PACK = 10_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CallRequest:
-    """What a block's M97, M98, M99 or G67 asks the runner for, once the block's motion is made.
+    """M97, M98, M99 or G67 of a block, to be carried out after the block's motion.
 
     Attributes:
         code: the code.
-        word: the word that wrote it.
+        word: the word of the code.
         number: program (M98), label (M97) or return label (M99); None without one.
         count: how often.
         label: label at which the program starts (M98 Q), None for its beginning.
@@ -68,7 +68,7 @@ class StateRequest:
 
 
 def request_call(state: State, command: Command) -> Result:
-    """M97, M98, M99, M198, G67: hands the request on."""
+    """M97, M98, M99, M198, G67: makes the request."""
     use = command.of_phase("call")[0]
     block, words = command.block, command.words
     number = whole_number(block, words["P"]) if "P" in words else None
@@ -92,7 +92,7 @@ def request_call(state: State, command: Command) -> Result:
 
 
 def request_state(state: State, command: Command) -> Result:
-    """M70 to M73: hands the request on."""
+    """M70 to M73: makes the request."""
     use = command.of_phase("state")[0]
     return state, (StateRequest(code=use.rule.code, word=use.word),)  # type: ignore[return-value]
 
@@ -104,14 +104,14 @@ def macro_arguments(block: ParsedBlock, words: Iterable[Word]) -> dict[int, floa
     """Local variables that the words of a macro call set, by lists I and II; the later of two words wins.
 
     Raises:
-        GcodeError: for a word that is no argument.
+        GcodeError: for a word that cannot be an argument.
     """
     arguments: dict[int, float] = {}
     group, last = 0, ""
     for word in words:
         number = _ARGUMENTS.get(word.letter)
         if number is None:
-            problem = f"{word.text} is no argument of a macro call"
+            problem = f"{word.text} is not an argument of a macro call"
             raise block.error(word, "bad-argument", problem, "A to F, H to K, M, Q to Z")
         if word.letter in "IJK":
             group += 1 if last and word.letter <= last else 0

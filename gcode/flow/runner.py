@@ -1,4 +1,4 @@
-"""Runs a program: which line comes next, and what executes its block.
+"""Runs a program: reads line after line, and has each block executed.
 
 Blocks of words are executed by `step`, a pure function; statements of the macro languages by `jumps` and `owords`,
 calls by `subprograms`. All of them share a `Session`. Refusals are handed to the caller.
@@ -240,7 +240,7 @@ class Runner:
 
 
 def _last_place(level: Level, run: PlainRun) -> Place:
-    """Place of the last line of a run that ends at the level's next line."""
+    """Location of the last line of a run that ends at the level's next line."""
     begin = max(level.program.text.rfind(b"\n", 0, run.offset - 1) + 1, run.begin)
     text, _ = level.program.line_at(begin)
     return Place(file=level.program.file, line=level.spot.line - 1, text=text, calls=level.calls)

@@ -45,7 +45,7 @@ def step(state: State, block: ParsedBlock, *, first_of_program: bool = False) ->
         words have none.
 
     Raises:
-        GcodeError: where the block is refused; then `state` holds on as a whole.
+        GcodeError: where the block is refused; `state` then remains valid.
     """
     if block.percent:
         return _percent(state, block)
@@ -86,7 +86,7 @@ def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...
 
 
 def _check_under_compensation(state: State, command: Command) -> None:
-    """Refuses what a control does not do while cutter compensation is on."""
+    """Refuses codes that a control does not execute while cutter compensation is on."""
     off = command.code("G40") is not None
     for use in command.uses:
         if use.rule.phase in state.control.dialect.not_compensated and not off:

@@ -30,7 +30,7 @@ def call_macro(session: Session, block: ParsedBlock, macro: tuple[Word, tuple[Wo
     """G65 calls a macro now, G66 and G66.1 after every motion from here on."""
     word, words = macro
     if word.value not in {float(code[1:]) for code in session.dialect.codes if code.startswith("G6")}:
-        raise block.error(word, "unknown-code", f"{word.text} is no code of the {session.dialect.name} dialect")
+        raise block.error(word, "unknown-code", f"{word.text} is not a code of the {session.dialect.name} dialect")
     number = next((whole_number(block, w) for w in words if w.letter == "P"), None)
     count = next((whole_number(block, w) for w in words if w.letter == "L"), 1)
     if number is None and block.name is None:
@@ -114,7 +114,7 @@ def _find(session: Session, block: ParsedBlock, word: Word, number: int | None) 
     found = session.library.numbered(session.level.program, number)
     if found is None:
         problem = f"program O{number} is not found"
-        expected = f"O{number} in this file, or a file O{number:04d} beside it or on the search path"
+        expected = f"O{number} in this file, or a file O{number:04d} in the same folder or on the search path"
         raise block.error(word, "unknown-program", problem, expected)
     return (*found, f"O{number}")
 

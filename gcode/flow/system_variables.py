@@ -93,7 +93,7 @@ class SystemVariables:
         """Value of #index.
 
         Raises:
-            EvaluationError: for a variable that is not there, or that no simulation knows.
+            EvaluationError: for a variable that does not exist, or that a simulation cannot know.
         """
         return self._read(index)
 
@@ -132,7 +132,7 @@ class SystemVariables:
         if column is not None:
             row = state.setup.tools.get(column[1], ToolOffset())
             return float(getattr(row, column[0])) / unit
-        raise _unknown(index, "no variable of this control")
+        raise _unknown(index, "not a variable of this control")
 
     def _fanuc_position(self, index: int) -> float | None:
         state = self._state
@@ -197,7 +197,7 @@ class SystemVariables:
             return _LINUXCNC_TOOL[index](state)
         if 0 < index < _PARAMETERS:
             return 1.0 if index == _DEBUG_OUTPUT else 0.0
-        raise _unknown(index, "no parameter of this control")
+        raise _unknown(index, "not a parameter of this control")
 
     @property
     def _linuxcnc(self) -> tuple[tuple[range, Callable[[int, float], float]], ...]:
@@ -232,7 +232,7 @@ class SystemVariables:
         return _nine(offset.zero_mm, offset.extra, machine)[axis] if axis < 9 else 0.0
 
     def _write_linuxcnc(self, index: int, value: float | None) -> None:
-        """Stores a parameter. LinuxCNC reads work offsets from them only when it starts, so none is moved by it."""
+        """Stores a parameter. LinuxCNC reads work offsets from parameters only when it starts, so none moves."""
         if not 0 < index < _PARAMETERS or index in range(5400, 5430):
             raise EvaluationError("read-only-variable", f"#{index} cannot be set", "a parameter that can be written")
         for number, first in ((1, 5161), (2, 5181)):
@@ -243,7 +243,7 @@ class SystemVariables:
         self._session.stored[index] = (value or 0.0, self._state.setup)
 
     def named(self, name: str) -> float | None:
-        """Value of one of the control's named parameters, None where there is none of that name."""
+        """Value of one of the control's named parameters, None for an unknown name."""
         if name in _CONSTANTS:
             return _CONSTANTS[name]
         reader = _NAMED.get(name)
@@ -268,7 +268,7 @@ def _nine(point: tuple[float, float, float], extra: tuple[float, ...], unit: flo
 
 
 def _unknown(index: int, reason: str) -> EvaluationError:
-    return EvaluationError("unknown-variable", f"#{index} is {reason}", "a variable that is there")
+    return EvaluationError("unknown-variable", f"#{index} is {reason}", "a variable that exists")
 
 
 def _offset_place(state: State, index: int) -> tuple[str, int] | None:

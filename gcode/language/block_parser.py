@@ -1,4 +1,4 @@
-"""Text of one line -> `ParsedBlock`s: a lexer that knows letters, numbers, comments, slash, percent and semicolon."""
+"""Text of one line -> `ParsedBlock`s: letters and numbers, comments, slash, percent sign and semicolon."""
 
 from __future__ import annotations
 
@@ -33,25 +33,25 @@ _CONTROL_NAMES = {"\x00": "NUL", "\r": "carriage return", "\x1a": "substitute (C
 
 
 def parse_line(place: Place, dialect: Dialect = FANUC, *, block_delete: bool = False) -> ParsedBlock:
-    """Takes one line apart that holds one block; see `parse_blocks`."""
+    """Parses a line that holds one block; see `parse_blocks`."""
     return parse_blocks(place, dialect, block_delete=block_delete)[0]
 
 
 def parse_blocks(place: Place, dialect: Dialect = FANUC, *, block_delete: bool = False) -> tuple[ParsedBlock, ...]:
-    """Takes one line apart.
+    """Parses one line.
 
-    Letters may be lower case, and blanks may stand anywhere or nowhere. Nothing is said about what the words mean.
+    Letters may be lower case, and blanks may be anywhere or nowhere. The meaning of words is not considered.
 
     Args:
-        place: the line (``place.text``, without its line end) and where it stands.
-        dialect: decides what a semicolon is, and which macro language there is.
+        place: the line (``place.text``, without its line end) and its location.
+        dialect: determines the meaning of a semicolon, and the macro language.
         block_delete: True where the block delete switch is on; then a block with a leading slash is not read.
 
     Returns:
         The line's blocks, at least one: more where a semicolon ends a block and another one follows.
 
     Raises:
-        GcodeError: for text that is no block: control characters, an unclosed comment, a letter without a number,
+        GcodeError: for text that is not a block: control characters, an unclosed comment, a letter without a number,
             a number out of range, a broken expression or statement, and lines over `MAX_LINE` characters.
     """
     text = place.text
@@ -121,7 +121,7 @@ def _segments(place: Place, dialect: Dialect) -> list[_Segment]:
 
 
 def _tail(place: Place, position: int) -> _Segment:
-    """What follows a semicolon that ends a block: the next block, or text that nobody can take for one."""
+    """The text after a semicolon that ends a block: the next block, or text that cannot be one."""
     tail = place.text[position + 1 :]
     first = tail.split(";", 1)[0].strip()
     if first and not _reads_as_block(first):
@@ -154,14 +154,14 @@ def _read(place: Place, source: Source, comments: tuple[str, ...], *, block_dele
     if parsed is not None:
         statement, end = parsed
         if end < len(source.text):
-            problem = f"{source.text[end:][:24]} behind a statement"
+            problem = f"{source.text[end:][:24]} after a statement"
             raise GcodeError(_at(place, source.column(end)), "text-after-statement", problem, "the end of the block")
         return ParsedBlock(place=place, words=tuple(words), statement=statement, comments=comments)
     return _words(place, source, position, words, comments)
 
 
 def _then(place: Place, source: Source, start: int) -> ParsedBlock:
-    """The block behind THEN."""
+    """The block after THEN."""
     return _words(place, source, start, [], ())
 
 
@@ -262,7 +262,7 @@ def _worked_out(place: Place, source: Source, start: int, letter: str, position:
             raise _macro(place, column, keyword[0], source.language)
         shown = f"{letter}{digits}"
         raise GcodeError(_at(place, column), "missing-number", f"{shown} has no number", f"{letter} and a number")
-    problem = f"{letter}{digits} is no number"
+    problem = f"{letter}{digits} is not a number"
     raise GcodeError(_at(place, column), "bad-number", problem, "digits with at most one point")
 
 

@@ -24,7 +24,7 @@ class Word(NamedTuple):
         value: the number, in the program's units; 0 where `expression` gives it.
         text: the word in upper case and without blanks, as error messages name it.
         column: column of the letter in the line, counted from 1.
-        expression: what gives the number; None where it stands there.
+        expression: computes the number; None where it is written.
     """
 
     letter: str
@@ -35,7 +35,7 @@ class Word(NamedTuple):
 
     @property
     def has_point(self) -> bool:
-        """True where the number was written with a decimal point, or worked out."""
+        """True where the number was written with a decimal point, or computed."""
         return "." in self.text or "#" in self.text or "[" in self.text
 
 
@@ -92,7 +92,7 @@ class Output:
 
 
 class OKeyword(Enum):
-    """What an O-word line says."""
+    """Keyword of an O-word line."""
 
     SUB = "sub"
     ENDSUB = "endsub"
@@ -119,8 +119,8 @@ class OWord:
         label: canonical label: the number as text (``100``) or the name in lower case; None where ``label_value``
             computes it (``o#1 call``).
         label_value: expression that gives a computed label.
-        keyword: what is said of it.
-        arguments: bracketed expressions behind the keyword: a condition, a count, arguments of a call, results.
+        keyword: the keyword.
+        arguments: bracketed expressions after the keyword: a condition, a count, arguments of a call, results.
         column: column of the O, counted from 1.
     """
 
@@ -136,17 +136,17 @@ Statement: TypeAlias = Goto | IfThen | While | End | Output | OWord
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParsedBlock:
-    """One block of a program, taken apart.
+    """One parsed block of a program.
 
     Attributes:
         place: file, line and text of the block; its column is 1.
         words: the words in their order, N and O included.
         assignments: ``#i = ...`` of the block, which take effect once all its words were read.
-        statement: what it says instead of words, None for a block of words.
+        statement: its statement of the macro language, None for a block of words.
         comments: texts of the comments without their brackets or semicolon.
         deleted: True where a block delete slash was obeyed; then ``words`` is empty.
         percent: True for a line that is a percent sign.
-        name: ``<NAME>`` of a program, behind O or M98.
+        name: ``<NAME>`` of a program, after O or M98.
         plain: True where the words are all plain numbers.
     """
 
@@ -161,11 +161,11 @@ class ParsedBlock:
     plain: bool = True
 
     def place_of(self, word: Word | None) -> Place:
-        """Place of one word of this block, or of the block itself for None."""
+        """Location of one word of this block, or of the block itself for None."""
         return self.place if word is None else replace(self.place, column=word.column)
 
     def place_at(self, column: int) -> Place:
-        """Place of a column of this block."""
+        """Location of a column of this block."""
         return replace(self.place, column=column)
 
     def error(self, word: Word | None, code: str, problem: str, expected: str = "") -> GcodeError:
@@ -173,11 +173,11 @@ class ParsedBlock:
         return GcodeError(self.place_of(word), code, problem, expected)
 
     def error_at(self, column: int, code: str, problem: str, expected: str = "") -> GcodeError:
-        """The error that refuses this block because of what stands at `column`."""
+        """The error that refuses this block because of the text at `column`."""
         return GcodeError(self.place_at(column), code, problem, expected)
 
     def evaluated(self, scope: Scope, *, exact: bool = False) -> ParsedBlock:
-        """The block with plain numbers; words whose value is vacant are left out.
+        """The block with plain numbers; words whose value is vacant are omitted.
 
         Args:
             scope: values of variables, and to what the numbers of each address are rounded.

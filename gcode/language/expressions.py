@@ -24,10 +24,10 @@ class EvaluationError(Exception):
     """An expression that cannot be read or has no value.
 
     Attributes:
-        code: short stable name of the kind of mistake.
-        problem: what is wrong.
-        expected: what would have been right.
-        column: where in the line, counted from 1; 0 where that is not known.
+        code: short stable name of the kind of error.
+        problem: the problem.
+        expected: a correct alternative.
+        column: column in the line, counted from 1; 0 where it is not known.
     """
 
     def __init__(self, code: str, problem: str, expected: str = "", column: int = 0) -> None:
@@ -75,7 +75,7 @@ class Expression:
         """The value, None for vacant.
 
         Raises:
-            EvaluationError: where it has none, or one that is no finite number.
+            EvaluationError: where it has none, or one that is not a finite number.
         """
         value = self.function(scope)
         if value is not None and not math.isfinite(value):
@@ -119,7 +119,7 @@ class Source:
         return self.columns[position] if position < len(self.columns) else (self.columns[-1] + 1 if self.columns else 1)
 
     def at(self, position: int, token: str) -> bool:
-        """True where `token` stands there."""
+        """True where `token` begins at this position."""
         return self.text.startswith(token, position)
 
     def error(self, position: int, code: str, problem: str, expected: str = "") -> EvaluationError:
@@ -131,7 +131,7 @@ def parse_operand(source: Source, position: int, depth: int = 0) -> tuple[Expres
     """Reads a number, variable, bracketed expression or function, with its sign.
 
     Returns:
-        The expression, and the position behind it.
+        The expression, and the position after it.
 
     Raises:
         EvaluationError: where there is none.
@@ -173,7 +173,7 @@ def _operand(source: Source, position: int, depth: int) -> tuple[Function, int]:
         return _call(source, position, name[0], depth)
     shown = source.text[position : position + 1] or "the end of the block"
     expected = "a number, a variable #, a bracket [ or a function"
-    raise source.error(position, "bad-expression", f"{shown} where a value is wanted", expected)
+    raise source.error(position, "bad-expression", f"{shown} where a value is expected", expected)
 
 
 def parse_variable(source: Source, position: int, depth: int = 0) -> tuple[Variable, int]:
@@ -258,13 +258,13 @@ def _chained(left: Function, steps: tuple[Step, ...]) -> Function:
 
 
 def _applied(source: Source, position: int, name: str, right: Function) -> Step:
-    """An operator and what stands on its right, to be applied to what stands on its left."""
+    """An operator and its right operand, to be applied to the left operand."""
     operator, column = source.language.operators[name][1], source.column(position)
-    tells_vacant = source.language.vacant and name in source.language.comparisons
+    compares_vacant = source.language.vacant and name in source.language.comparisons
 
     def apply(a: float | None, scope: Scope) -> float:
         b = right(scope)
-        if tells_vacant and (a is None or b is None):
+        if compares_vacant and (a is None or b is None):
             return float((a is b) == (name == "EQ"))
         try:
             return operator(a or 0.0, b or 0.0)
@@ -284,7 +284,9 @@ def _call(source: Source, position: int, letters: str, depth: int) -> tuple[Func
         if letters in language.refused:
             raise source.error(position, "unsupported-function", f"{letters} is not supported")
         known = ", ".join(sorted(language.functions)) or "none"
-        raise source.error(position, "unknown-function", f"{letters} is no function", f"one of {known}, and a bracket")
+        raise source.error(
+            position, "unknown-function", f"{letters} is not a function", f"one of {known}, and a bracket"
+        )
     if name == "EXISTS":
         return _existence(source, bracket)
     argument, end = _binary(source, bracket + 1, 0, depth + 1)

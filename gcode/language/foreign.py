@@ -2,7 +2,7 @@
 
 A rule is data: what it is a mark of, and how much it proves. A certain mark is enough by itself; of likely ones two
 different ones of the same control are needed. Comments are taken out first, so that a note about another control
-proves nothing, unless the rule asks for the text as it stands.
+proves nothing, unless the rule searches the text as is.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-#: Lines that are looked at, and characters of each: the marks stand near its beginning.
+#: Lines that are searched, and characters of each: the marks are near the beginning.
 MOST_LINES = 400
 MOST_COLUMNS = 256
 #: What the likely marks of one control must add up to; a certain one has it alone.
@@ -21,7 +21,7 @@ PROOF = 2
 
 @dataclass(frozen=True, slots=True)
 class Foreign:
-    """What a text was recognised as.
+    """The kind of control, or of file, that a text was recognised as.
 
     Attributes:
         line: line of its first mark, counted from 1.
@@ -242,7 +242,7 @@ def _marks(line: str, number: int) -> Iterator[tuple[Rule, re.Match[str]]]:
 
 
 def _without_comments(line: str) -> str:
-    """The line with blanks inside its brackets and nothing behind a semicolon; columns stay."""
+    """The line with blanks inside its brackets and nothing after a semicolon; columns stay."""
     return re.sub(r"\([^)]*", lambda match: "(" + " " * (len(match[0]) - 1), line).partition(";")[0]
 
 

@@ -1,7 +1,7 @@
 """The text of a program file with random access: lines, programs in it (O words), labels (N words), O-word lines.
 
-The text is kept as bytes and lines are decoded as they are executed; where things stand is looked up by regular
-expressions the first time that something jumps there.
+The text is kept as bytes and lines are decoded as they are executed; labels and subprograms are found by regular
+expressions when they are first used.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from gcode.language.block_parser import MAX_LINE
 
 #: Largest file that is read; no control takes a tenth of it.
 MAX_BYTES = 1 << 30
-#: Length of the part by which the kind of control is told.
+#: Length of the part that the kind of control is recognised from.
 HEAD_BYTES = 1 << 15
 
 _LABEL = re.compile(rb"^[ \t]*(?:/\d?[ \t]*)?N[ \t]*(\d{1,40}+)(?![\d.])", re.IGNORECASE | re.MULTILINE)
@@ -53,7 +53,7 @@ BEGINNING = Spot(0, 1)
 
 @dataclass(frozen=True, slots=True)
 class OLine:
-    """A line with an O-word: where it is, its label, and what it says of it."""
+    """A line with an O-word: its position, label and keyword."""
 
     spot: Spot
     label: str
@@ -61,12 +61,12 @@ class OLine:
 
 
 class Program:
-    """One file's text.
+    """The text of a program file, with access by line, label and subprogram.
 
     Attributes:
         file: its name, for places.
         text: its bytes.
-        folder: where it lies, None for a text that is no file.
+        folder: its folder, None for a text that is not a file.
     """
 
     def __init__(self, text: bytes, file: str, folder: Path | None = None) -> None:
@@ -93,7 +93,7 @@ class Program:
 
     @property
     def head(self) -> str:
-        """The first part of the text, by which the kind of control is told."""
+        """The first part of the text, from which the kind of control is recognised."""
         return _decoded(self.text[:HEAD_BYTES])
 
     @property
@@ -125,7 +125,7 @@ class Program:
         return sorted(starts)
 
     def section(self, offset: int) -> tuple[int, int]:
-        """First and last-but-one offset of the program in which `offset` lies."""
+        """First and last-but-one offset of the program that holds `offset`."""
         index = bisect_right(self._starts, offset)
         begin = self._starts[index - 1] if index else 0
         end = self._starts[index] if index < len(self._starts) else self.size
@@ -183,7 +183,7 @@ class Program:
         return [line.spot.offset for line in self.o_lines]
 
     def o_lines_after(self, offset: int) -> Iterable[OLine]:
-        """The lines with O-words behind the one at `offset`, in order."""
+        """The lines with O-words after the one at `offset`, in order."""
         return self.o_lines[bisect_right(self._o_offsets, offset) :]
 
     def o_lines_before(self, offset: int) -> Iterable[OLine]:
@@ -232,7 +232,7 @@ def read_program(path: Path | str) -> Program:
     """Reads a program file.
 
     Raises:
-        GcodeError: where the file cannot be read, is no plain file, or is larger than `MAX_BYTES`.
+        GcodeError: where the file cannot be read, is not a regular file, or is larger than `MAX_BYTES`.
     """
     path = Path(path)
     try:

@@ -22,10 +22,10 @@ def parse_statement(source: Source, position: int, then: Then) -> tuple[Statemen
     """Reads the statement at a position, None where there is none.
 
     Args:
-        then: reads the block behind THEN.
+        then: reads the block after THEN.
 
     Returns:
-        The statement, and the position behind it.
+        The statement, and the position after it.
 
     Raises:
         EvaluationError: for a statement that is broken.
@@ -80,7 +80,7 @@ def parse_assignment(source: Source, position: int) -> tuple[Assignment, int]:
     target, end = parse_variable(source, position)
     if not source.at(end, "="):
         shown = source.text[end : end + 1] or "the end of the block"
-        raise source.error(end, "bad-statement", f"{shown} behind a variable", "= and its value")
+        raise source.error(end, "bad-statement", f"{shown} after a variable", "= and its value")
     if source.language.named:
         value, behind = parse_operand(source, end + 1)
     else:
@@ -98,7 +98,7 @@ def parse_whole(source: Source, position: int) -> tuple[Expression, int]:
     expression, end = parse_operand(bracketed, 0)
     inside = Expression(source.text[position:], source.column(position), expression.function)
     if end < len(bracketed.text):
-        raise source.error(position + end - 2, "bad-expression", "more behind the value", "the end of the block")
+        raise source.error(position + end - 2, "bad-expression", "more text after the value", "the end of the block")
     return inside, len(source.text)
 
 
@@ -123,17 +123,17 @@ def _o_word(source: Source, position: int) -> tuple[Statement, int] | None:
         if end == len(source.text) and value is None:
             return None
         shown = source.text[end : end + 12] or "the end of the block"
-        raise source.error(position, "o-word", f"{shown} behind O<{label}>", "sub, call, if, while, do, repeat...")
+        raise source.error(position, "o-word", f"{shown} after O<{label}>", "sub, call, if, while, do, repeat...")
     return _with_arguments(source, keyword, label, value, column)
 
 
 def _with_arguments(
     source: Source, keyword: re.Match[str], label: str | None, value: Expression | None, column: int
 ) -> tuple[Statement, int]:
-    said, end = OKeyword(keyword[0].lower()), keyword.end()
+    word_keyword, end = OKeyword(keyword[0].lower()), keyword.end()
     arguments: list[Expression] = []
-    while source.at(end, "[") and said not in _BARE:
+    while source.at(end, "[") and word_keyword not in _BARE:
         argument, end = parse_operand(source, end)
         arguments.append(argument)
-    word = OWord(label=label, label_value=value, keyword=said, arguments=tuple(arguments), column=column)
+    word = OWord(label=label, label_value=value, keyword=word_keyword, arguments=tuple(arguments), column=column)
     return word, end

@@ -1,1 +1,1 @@
-"""What a block does, one module a phase: modes, offsets, targets, arcs, cycles, compensation."""
+"""Phases of the execution of a block: modes, offsets, transforms, motions (straight, arcs, cycles), compensation."""

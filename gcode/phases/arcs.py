@@ -1,8 +1,8 @@
 """G2 and G3: centre, sense and turns of an arc from its words, in any of the three planes.
 
 Each plane's two axes are taken in the order of `PLANE_AXES` (XY, ZX, YZ), which makes a right-handed frame with the
-plane's normal; G3 is counter-clockwise seen against that normal in all three. All is worked out in the axes of the
-program and then brought to machine coordinates, so that a rotation, scaling or mirror image acts on the whole arc.
+plane's normal; G3 is counter-clockwise seen against that normal in all three. Everything is computed in the axes of the
+program and then transformed to machine coordinates, so that a rotation, scaling or mirror image acts on the whole arc.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ _PLANE_NAMES: Mapping[int, str] = {17: "XY", 18: "ZX", 19: "YZ"}
 
 @dataclass(frozen=True, slots=True)
 class _Ends:
-    """Ends of an arc and the program zero, mm: machine coordinates, or those of a program that is turned.
+    """Ends of an arc and the program zero, mm: in machine coordinates, or in program coordinates that are transformed.
 
     Attributes:
-        closed: the end lies over the start.
+        closed: the end is above or below the start.
     """
 
     start: Point
@@ -45,7 +45,7 @@ def arc(state: State, command: Command) -> Result:
 
     Raises:
         GcodeError: without a feed, without a centre or with two, with a centre word of another plane, with an R too
-            small to reach, where the radii at the two ends do not agree, and where scaling makes it no circle.
+            small for the chord, where the radii at the two ends differ, and where scaling distorts the circle.
     """
     if state.modes.feed <= 0.0:
         feed_mm_min(state, command, 0.0)
@@ -53,7 +53,7 @@ def arc(state: State, command: Command) -> Result:
     centre_words = {letter: command.words[letter] for letter in _CENTRE_LETTERS if letter in command.words}
     radius = command.words.get("R")
     if radius is not None and centre_words:
-        problem = f"{radius.text} beside {', '.join(w.text for w in centre_words.values())}"
+        problem = f"{radius.text} together with {', '.join(w.text for w in centre_words.values())}"
         raise command.block.error(radius, "arc-two-centres", problem, "a radius R, or a centre by I, J, K")
     if radius is not None:
         centre = _centre_from_radius(state, command, ends, radius)
@@ -70,7 +70,7 @@ def _ends(state: State, command: Command) -> _Ends:
     if frame.matrix is None and not state.modes.polar:
         return _Ends(state.position_mm, programmed_end(state, command), frame.zero_mm)
     if frame.plane_scale(state.machine.plane) is None:
-        problem = f"{state.modes.motion} while the {_plane(state)} is scaled unevenly or turned out of itself"
+        problem = f"{state.modes.motion} while the {_plane(state)} is scaled unevenly or turned out of its plane"
         raise command.block.error(None, "arc-uneven-scale", problem, "straight motions, or an even scale")
     return _Ends(state.program_mm, program_end(state, command), (0.0, 0.0, 0.0))
 
@@ -110,13 +110,13 @@ def _path_feed(state: State, command: Command, event: ArcMotion) -> float:
 
 
 def _whole_turns(command: Command) -> int:
-    """P: how many turns are begun."""
+    """P: the number of turns, the last one begun."""
     word = command.words.get("P")
     if word is None:
         return 1
     turns = whole_number(command.block, word)
     if turns == 0:
-        raise command.block.error(word, "bad-value", f"{word.text} is no count of turns", "P1 or more")
+        raise command.block.error(word, "bad-value", f"{word.text} is not a number of turns", "P1 or more")
     return turns
 
 
@@ -130,7 +130,7 @@ def arc_lengths(event: ArcMotion) -> tuple[float, float]:
 
 
 def _closed(state: State, ends: _Ends) -> _Ends:
-    """The end put exactly over the start where rounding alone parts them: then the arc is a full turn, not none."""
+    """The end exactly at the start where only rounding separates them: the arc is then a full turn, not none."""
     first, second, _ = PLANE_AXES[state.machine.plane]
     if math.hypot(ends.end[first] - ends.start[first], ends.end[second] - ends.start[second]) > SAME_POSITION_MM:
         return ends
@@ -166,7 +166,7 @@ def _centre_from_words(state: State, command: Command, ends: _Ends, words: Mappi
 
 
 def _centre(state: State, ends: _Ends, words: Mapping[str, Word], *, absolute: bool) -> Point:
-    """The centre that I, J, K name; along the plane's normal it lies level with the start."""
+    """The centre that I, J, K name; along the plane's normal it is level with the start."""
     origin = ends.zero if absolute else ends.start
     centre = list(ends.start)
     for axis in PLANE_AXES[state.machine.plane][:2]:
@@ -188,7 +188,7 @@ def _radii(state: State, ends: _Ends, centre: Point) -> tuple[float, float]:
 def _radius_error(
     state: State, command: Command, ends: _Ends, words: Mapping[str, Word], radii: tuple[float, float]
 ) -> GcodeError:
-    """The error for radii that do not agree; it says so where the other meaning of I, J, K would fit."""
+    """The error for radii that do not agree; it mentions the other meaning of I, J, K where that would fit."""
     now = "absolute" if state.modes.absolute_centres else "incremental"
     other = "incremental" if state.modes.absolute_centres else "absolute"
     problem = (

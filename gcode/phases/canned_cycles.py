@@ -33,7 +33,7 @@ def drill(state: State, command: Command) -> Result:
     """The holes that a block makes in a cycle's mode.
 
     Raises:
-        GcodeError: what the cycle refuses, with the place of its word.
+        GcodeError: for a word that the cycle refuses, or a missing one.
     """
     rules = state.control.dialect.cycles
     if rules is None:
@@ -100,7 +100,7 @@ def _repeats(rules: CycleRules, letter: str) -> bool:
 def _without_polar(
     state: State, command: Command, position: Position, words: dict[str, float]
 ) -> tuple[Position, dict[str, float]]:
-    """With polar coordinates the hole's place is worked out here, and the cycle gets rectangular words."""
+    """With polar coordinates the position of the hole is computed here, and the cycle gets rectangular words."""
     i, j, _ = PLANE_AXES[state.machine.plane]
     if not state.modes.polar or not {AXES[i], AXES[j]} & command.words.keys():
         return position, words

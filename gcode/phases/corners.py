@@ -26,7 +26,7 @@ Ends: TypeAlias = tuple[complex, complex]
 
 #: Two directions that differ by no more than this have no corner: the motion inserted has no length.
 SMOOTH_RAD = math.radians(1.0)
-#: The words that ask for a corner.
+#: The words of a corner.
 _WORDS: Mapping[str, str] = {"chamfer": ",C", "round": ",R"}
 #: A corner may use up a straight motion; rounding of figures may then take this much more of it, mm.
 _ROUNDING_MM = 1e-6
@@ -49,9 +49,9 @@ def insert_corner(first: Motion, second: Motion, kind: CornerKind, size_mm: floa
         The first motion shortened, the corner's motion with the first one's place and feed, the second shortened.
 
     Raises:
-        GcodeError: ``corner-size`` for a size not above 0; ``corner-motion`` beside a positioning motion (alarm
+        GcodeError: ``corner-size`` for a size not above 0; ``corner-motion`` with a rapid motion (alarm
             PS0052); ``corner-plane`` where the two are not in one plane or leave it; ``corner-no-motion`` where one
-            does not move (PS0051); ``corner-tangent`` where the path turns right back; ``corner-arc-chamfer`` for a
+            does not move (PS0051); ``corner-tangent`` where the path reverses; ``corner-arc-chamfer`` for a
             chamfer at an arc; ``corner-too-large`` where a motion is too short for it (PS0055).
     """
     if not (math.isfinite(size_mm) and size_mm > 0.0):
@@ -75,25 +75,25 @@ def insert_corner(first: Motion, second: Motion, kind: CornerKind, size_mm: floa
 
 
 def _segment(frame: WorkingPlane, motion: Motion, first: Motion, kind: CornerKind) -> Segment:
-    """`motion` seen in the plane, once it is known to be one that a corner can stand beside."""
+    """`motion` projected onto the plane, after the check that a corner can be next to it."""
     word = _WORDS[kind]
     if motion.state.plane != frame.plane:
         problem = f"{word} between motions of the planes G{frame.plane} and G{motion.state.plane}"
         raise _error(first, "corner-plane", problem, "both motions in one plane")
     if isinstance(motion, LinearMotion) and motion.rapid:
-        raise _error(first, "corner-motion", f"{word} beside a positioning motion", "G1, G2 or G3 before and after it")
+        raise _error(first, "corner-motion", f"{word} with a rapid motion", "G1, G2 or G3 before and after it")
     rise = frame.height(motion.end_mm) - frame.height(motion.start_mm)
     if abs(rise) > SAME_POINT_MM:
-        problem = f"{word} beside a motion that leaves the plane G{frame.plane} by {rise:.4f} mm"
+        problem = f"{word} with a motion that leaves the plane G{frame.plane} by {rise:.4f} mm"
         raise _error(first, "corner-plane", problem, "motions in the plane")
     segment = frame.segment(motion)
     if not segment.moves:
-        raise _error(first, "corner-no-motion", f"{word} beside a block without motion in the plane", "a motion")
+        raise _error(first, "corner-no-motion", f"{word} with a block without motion in the plane", "a motion")
     return segment
 
 
 def _smooth(before: Segment, after: Segment, kind: CornerKind) -> bool:
-    """Whether the path goes on without a corner; a path that turns right back is refused."""
+    """Whether the path continues without a corner; a path that reverses is refused."""
     d1, d2 = before.direction_out, after.direction_in
     angle = math.atan2(abs(cross(d1, d2)), dot(d1, d2))
     if math.pi - angle <= SMOOTH_RAD:
@@ -124,8 +124,8 @@ def _round(before: Segment, after: Segment, size: float) -> Ends:
 
 
 def _centres(before: Segment, after: Segment, offset: float) -> tuple[complex, ...]:
-    """The points at the signed distance `offset` beside both motions, each prolonged in its own shape."""
-    first, second = _beside(before, before.end, offset), _beside(after, after.start, offset)
+    """The points at the signed distance `offset` from both motions, each extended in its own shape."""
+    first, second = _offset_point(before, before.end, offset), _offset_point(after, after.start, offset)
     if before.centre is None and after.centre is None:
         d1, d2 = before.direction_out, after.direction_in
         return (first + d1 * cross(second - first, d2) / cross(d1, d2),)
@@ -146,7 +146,7 @@ def _between_arcs(before: Segment, after: Segment, offset: float) -> tuple[compl
     return circle_circle(before.centre, a, after.centre, b) if min(a, b) > 0.0 else ()
 
 
-def _beside(segment: Segment, point: complex, offset: float) -> complex:
+def _offset_point(segment: Segment, point: complex, offset: float) -> complex:
     return point + 1j * offset * segment.direction_at(point)
 
 
@@ -156,7 +156,7 @@ def _shifted_radius(segment: Segment, point: complex, centre: complex, offset: f
 
 
 def _foot(segment: Segment, centre: complex) -> complex:
-    """Where a circle about `centre` touches the motion, prolonged."""
+    """Point of contact of a circle about `centre` with the extended motion."""
     if segment.centre is None:
         direction = segment.direction_in
         return segment.start + direction * dot(centre - segment.start, direction)
@@ -164,7 +164,7 @@ def _foot(segment: Segment, centre: complex) -> complex:
 
 
 def _reaches(segment: Segment, point: complex) -> bool:
-    """Whether `point` lies on the motion. It may use up a straight motion, but must leave something of an arc."""
+    """Whether `point` lies on the motion. It may use up a straight motion, but must leave part of an arc."""
     if segment.centre is None:
         along = dot(point - segment.start, segment.direction_in)
         return -_ROUNDING_MM <= along <= abs(segment.end - segment.start) + _ROUNDING_MM
@@ -174,7 +174,7 @@ def _reaches(segment: Segment, point: complex) -> bool:
 
 
 def _too_large(before: Segment, word: str, size: float, what: str) -> GcodeError:
-    problem = f"{word}{size:g}: a corner of {size:.4f} mm has no room on {what}"
+    problem = f"{word}{size:g}: a corner of {size:.4f} mm has no space on {what}"
     return _error(before.motion, "corner-too-large", problem, "a smaller size or longer motions")
 
 

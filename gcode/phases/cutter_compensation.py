@@ -1,6 +1,6 @@
-"""What stands between the programmed path and the tool's: cutter compensation, and corners cut or rounded.
+"""From the programmed path to the path of the tool: cutter compensation, and corners cut or rounded.
 
-Both need the next motion before the present one is known, so motions wait in a `WaitingPath` as part of the state.
+Both need the next motion before the present one is known, so motions wait in `State.waiting`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from gcode.settings import ToolOffset
 
 _SIDES: Mapping[str, compensation.Hand] = {"G41": "left", "G42": "right", "G41.1": "left", "G42.1": "right"}
 _OTHER: Mapping[compensation.Hand, compensation.Hand] = {"left": "right", "right": "left"}
-#: Orientations of tools whose edge lies all around their axis: those of mills (0), and 9 of round lathe tools.
+#: Orientations of tools whose cutting edge is all around their axis: those of mills (0), and 9 of round lathe tools.
 ROUND_ORIENTATIONS = frozenset({0, 9})
 _CORNERS: Mapping[str, CornerKind] = {",C": "chamfer", ",R": "round"}
 
@@ -59,7 +59,7 @@ def _with_number(state: State, command: Command, code: str | None) -> tuple[Stat
 
 
 def _radius(state: State, command: Command, code: str | None) -> float:
-    """Radius that the block asks for, mm."""
+    """Cutter radius of the block, mm."""
     dialect, word = state.control.dialect, command.words.get("D")
     use = command.of_phase("radius")[0].word if code else word
     if code in ("G41.1", "G42.1"):
@@ -121,20 +121,20 @@ def _off(state: State, command: Command) -> Result:
     if "motion" in command.phases:
         return replace(state, waiting=replace(path, cancelling=True)), ()
     events, at = compensation.end(path.compensation)
-    beside = None if same_position(at, state.position_mm) else at
-    return _with_waiting(state, replace(path, compensation=None, cancelling=False, at_mm=beside)), events
+    off_path = None if same_position(at, state.position_mm) else at
+    return _with_waiting(state, replace(path, compensation=None, cancelling=False, at_mm=off_path)), events
 
 
 def _with_waiting(state: State, path: WaitingPath) -> State:
-    """The state with what waits; None again where nothing does."""
+    """The state with waiting motions; None again where nothing waits."""
     return replace(state, waiting=None if path == WaitingPath() else path)
 
 
 def through(state: State, command: Command | None, events: Iterable[Event]) -> Result:
-    """Sends a block's events through what waits.
+    """Passes the events of a block through the waiting corner and the compensation.
 
     Args:
-        state: with a path, or with a corner asked for by `command`.
+        state: with waiting motions, or with a corner requested by `command`.
         command: the block, None for events that belong to none.
         events: as programmed.
 
@@ -142,7 +142,7 @@ def through(state: State, command: Command | None, events: Iterable[Event]) -> R
         The state, and the events that are finished.
     """
     out: list[Event] = []
-    corner = _asked_corner(state, command)
+    corner = _requested_corner(state, command)
     for event in events:
         path = state.waiting or WaitingPath()
         if path.corner is not None:
@@ -167,8 +167,8 @@ def flushed(state: State) -> Result:
     return state, events[:-1]
 
 
-def _asked_corner(state: State, command: Command | None) -> tuple[CornerKind, float] | None:
-    """The corner that a block asks for at its end."""
+def _requested_corner(state: State, command: Command | None) -> tuple[CornerKind, float] | None:
+    """The corner that a block requests at its end."""
     if command is None or not state.control.dialect.corner_letters:
         return None
     given = [letter for letter in _CORNERS if letter in command.words]
@@ -176,10 +176,10 @@ def _asked_corner(state: State, command: Command | None) -> tuple[CornerKind, fl
         return None
     word = command.words[given[-1]]
     if len(given) > 1:
-        problem = f"{command.words[given[0]].text} beside {word.text}"
+        problem = f"{command.words[given[0]].text} together with {word.text}"
         raise command.block.error(word, "corner-two", problem, "one corner in a block")
     if word.value <= 0.0:
-        raise command.block.error(word, "bad-value", f"{word.text} is no size of a corner", "a length above 0")
+        raise command.block.error(word, "bad-value", f"{word.text} is not a corner size", "a length above 0")
     return _CORNERS[given[0]], word.value * state.modes.unit_mm
 
 
@@ -191,7 +191,7 @@ def _hold(state: State, motion: Motion, kind: CornerKind, size_mm: float) -> Sta
 def _past_corner(
     state: State, path: WaitingPath, corner: WaitingCorner, event: Event
 ) -> tuple[State, tuple[Event, ...]]:
-    """What a corner that waits gives once the next event is there."""
+    """The events of a waiting corner once the next event is known."""
     if isinstance(event, ProgramStop) and event.end:
         problem = "a corner at the end of the program"
         raise _corner_error(corner, problem)
@@ -210,7 +210,7 @@ def _compensated(state: State, event: Event) -> tuple[State, tuple[Event, ...]]:
     if path is None or (path.compensation is None and path.at_mm is None):
         return state, (event,)
     if path.compensation is None:
-        return _from_beside(state, path, event)
+        return _from_off_path(state, path, event)
     if isinstance(event, ProgramStop) and event.end:
         events, _ = compensation.end(path.compensation)
         return _with_waiting(state, replace(path, compensation=None, cancelling=False)), (*events, event)
@@ -219,8 +219,8 @@ def _compensated(state: State, event: Event) -> tuple[State, tuple[Event, ...]]:
     if path.cancelling:
         events = compensation.cancel(path.compensation, event)
         at = _last_end(events, event.end_mm)
-        beside = None if same_position(at, event.end_mm) else at
-        return _with_waiting(state, replace(path, compensation=None, cancelling=False, at_mm=beside)), events
+        off_path = None if same_position(at, event.end_mm) else at
+        return _with_waiting(state, replace(path, compensation=None, cancelling=False, at_mm=off_path)), events
     changed, events = compensation.move(path.compensation, event)
     return replace(state, waiting=replace(path, compensation=changed)), events
 
@@ -230,8 +230,8 @@ def _last_end(events: tuple[Event, ...], otherwise: Point) -> Point:
     return ends[-1] if ends else otherwise
 
 
-def _from_beside(state: State, path: WaitingPath, event: Event) -> tuple[State, tuple[Event, ...]]:
-    """The motion after G40 alone starts beside the programmed path and ends on it."""
+def _from_off_path(state: State, path: WaitingPath, event: Event) -> tuple[State, tuple[Event, ...]]:
+    """The motion after G40 alone starts off the programmed path and ends on it."""
     at = path.at_mm
     if at is None or not isinstance(event, LinearMotion | ArcMotion):
         return state, (event,)

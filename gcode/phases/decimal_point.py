@@ -15,7 +15,7 @@ from gcode.language.blocks import ParsedBlock
 _INCH_INCREMENT, _MM_INCREMENT = 0.0001, 0.001
 #: Seconds and degrees have one of their own, whatever unit lengths have.
 _OTHER_INCREMENT = 0.001
-#: Letters beside a code that do not count lengths, with what their unit is. A scale factor's is read by G51 itself.
+#: Letters that are not lengths in a block with a code, with their unit. A scale factor's is read by G51 itself.
 _OWN_INCREMENTS: Mapping[str, Mapping[str, float]] = {
     "G4": {"X": _OTHER_INCREMENT},
     "G51": {"I": 1.0, "J": 1.0, "K": 1.0},
@@ -28,7 +28,7 @@ def in_increments(state: State, block: ParsedBlock) -> ParsedBlock:
     """The block with the numbers that have no decimal point as lengths in the program's unit.
 
     Args:
-        state: the control before the block; its machine decides whether there is anything to be done.
+        state: the control before the block; its machine determines whether anything changes.
         block: its words are plain numbers.
     """
     letters = state.control.dialect.increment_letters
@@ -53,7 +53,7 @@ def _is_inch(state: State, codes: set[str]) -> bool:
 
 
 def _own_increments(state: State, codes: set[str]) -> dict[str, float]:
-    """Units of the letters that count no lengths in a block with these codes."""
+    """Units of the letters that are not lengths in a block with these codes."""
     own = {letter: unit for code in codes for letter, unit in _OWN_INCREMENTS.get(code, {}).items()}
     cycles = state.control.dialect.cycles
     if cycles is not None and _motion(state, codes, cycles.cycles) in cycles.cycles:

@@ -1,4 +1,4 @@
-"""From a block's words to places, and the feed that leads there."""
+"""End points of motions from the words of a block, and the feed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from gcode.phases.offsets import extra_value, known_offsets, to_extra
 
 
 def programmed_end(state: State, command: Command, *, adds_length: bool = True) -> Point:
-    """Controlled point that the axis words name, machine coordinates, mm. Axes without a word stay.
+    """Controlled point that the axis words name, machine coordinates, mm. Axes without a word are unchanged.
 
     Args:
         adds_length: with G91, whether a Z word also moves by a change of the length offset that nothing has acted on
@@ -58,7 +58,7 @@ def _length(state: State, word: Word) -> float:
 
 
 def program_end(state: State, command: Command) -> Point:
-    """Place that the axis words name, program coordinates, mm."""
+    """Position that the axis words name, program coordinates, mm."""
     modes, here = state.modes, state.program_mm
     end = list(here)
     for index, axis in enumerate(AXES):
@@ -71,7 +71,7 @@ def program_end(state: State, command: Command) -> Point:
 
 
 def _from_polar(state: State, command: Command, here: Point, end: list[float]) -> Point:
-    """The plane's words read as a radius and an angle; one that is missing stays.
+    """The plane's words read as a radius and an angle; a missing one is unchanged.
 
     Raises:
         GcodeError: for an incremental radius that is not measured from where the tool was at G16.

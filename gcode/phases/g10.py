@@ -33,7 +33,9 @@ def set_data(state: State, command: Command) -> Result:
     table = state.control.dialect.data_kinds
     if kind not in table:
         known = ", ".join(f"L{n}" for n in table)
-        raise command.block.error(word, "unknown-data", f"{word.text} is no data that is set here", known)
+        raise command.block.error(
+            word, "unknown-data", f"{word.text} is not a kind of data that can be set here", known
+        )
     takes = _TAKES[table[kind]]
     for letter in command.words.keys() & set(use.rule.letters) - set("LP" + takes):
         problem = f"{command.words[letter].text} has no meaning in {use.word.text} {word.text}"
@@ -43,19 +45,19 @@ def set_data(state: State, command: Command) -> Result:
 
 
 def _lathe_words(command: Command) -> tuple[Event, ...]:
-    """Says that the angles of a lathe tool change no motion."""
+    """The notice that the angles of a lathe tool have no effect on motion."""
     words = [command.words[letter] for letter in "IJ" if letter in command.words]
-    text = f"{' '.join(word.text for word in words)}: the angles of a lathe tool change no motion"
+    text = f"{' '.join(word.text for word in words)}: the angles of a lathe tool have no effect on motion"
     return (Notice(place=command.block.place_of(words[0]), code="no-motion", text=text),) if words else ()
 
 
 def _set_zero(state: State, command: Command) -> Result:
-    """G10 L2: the zero of a work offset; with G91 the words are added where the dialect says so."""
+    """G10 L2: the zero of a work offset; with G91 the words are added where the dialect does so."""
     return _write_offset(state, command, from_position=False)
 
 
 def _set_zero_here(state: State, command: Command) -> Result:
-    """G10 L20: in FANUC the zero of an additional work offset, in LinuxCNC so that the tool is at the given place."""
+    """G10 L20: in FANUC the zero of an additional work offset, in LinuxCNC from the position of the tool."""
     if state.control.dialect.additional_by_l20:
         return _write_offset(state, command, from_position=False, additional=True)
     return _write_offset(state, command, from_position=True)
@@ -89,12 +91,12 @@ def _turned(state: State, command: Command, old: WorkOffset, *, from_position: b
     if word is None:
         return old.rotation_deg
     if not state.control.dialect.shift_is_rotated or from_position:
-        raise command.block.error(word, "unused-word", f"{word.text}: no work offset of this control is turned")
+        raise command.block.error(word, "unused-word", f"{word.text}: work offsets of this control have no rotation")
     return word.value
 
 
 def _offset_from_position(state: State, command: Command, old: WorkOffset) -> WorkOffset:
-    """The offset under which the tool stands at the given program coordinates."""
+    """The offset that puts the tool at the given program coordinates."""
     named = state.with_setup(offsets=MappingProxyType({**state.setup.offsets, state.machine.wcs: old}))
     here = named.program_mm
     wanted = axis_words(state, command, here)
@@ -120,7 +122,7 @@ def _offset_name(state: State, command: Command, *, additional: bool) -> str:
         return state.machine.wcs if state.control.dialect.shift_is_rotated else "external"
     count = 9 if "G59.1" in state.control.dialect.codes else 6
     if number > count:
-        raise command.block.error(word, "bad-value", f"{word.text} is no work offset", f"P0 to P{count}")
+        raise command.block.error(word, "bad-value", f"{word.text} is not a work offset", f"P0 to P{count}")
     return NUMBERED_OFFSETS[number - 1]
 
 
@@ -131,7 +133,7 @@ def _tool_number(command: Command) -> int:
         raise command.block.error(use, "missing-word", f"{use.text} without P", "P and the number of a tool offset")
     number = whole_number(command.block, word)
     if number == 0:
-        raise command.block.error(word, "bad-value", f"{word.text} is no tool offset", "P1 or more")
+        raise command.block.error(word, "bad-value", f"{word.text} is not a tool offset", "P1 or more")
     return number
 
 
@@ -152,7 +154,7 @@ def _set_tool_field(field: str, letter: str = "R") -> Action:
 
 
 def _set_tool_row_here(state: State, command: Command) -> Result:
-    """LinuxCNC's G10 L10: the offset with which the tool would stand at the given program coordinates."""
+    """LinuxCNC's G10 L10: the offset that puts the tool at the given program coordinates."""
     return _row_from_position(state, command, state.frame)
 
 
@@ -167,7 +169,7 @@ def _row_from_position(state: State, command: Command, frame: CoordinateFrame) -
     gauge = state.gauge_mm
     believed = frame.to_program(difference(gauge, (row.x_mm, row.y_mm, row.length_mm)))
     place = difference(gauge, frame.to_machine(axis_words(state, command, believed)))
-    return _with_tool(state, number, _with_place(state, command, row, place)), ()
+    return _with_tool(state, number, _with_offsets(state, command, row, place)), ()
 
 
 def _set_tool_row(state: State, command: Command) -> Result:
@@ -177,7 +179,7 @@ def _set_tool_row(state: State, command: Command) -> Result:
         use = command.of_phase("data")[0].word
         raise command.block.error(use, "missing-word", f"{use.text} sets nothing", "axis words, R, I, J or Q")
     place = axis_words(state, command, (row.x_mm, row.y_mm, row.length_mm))
-    return _with_tool(state, number, _with_place(state, command, row, place)), ()
+    return _with_tool(state, number, _with_offsets(state, command, row, place)), ()
 
 
 def _known_row(state: State, command: Command) -> tuple[int, ToolOffset]:
@@ -188,14 +190,14 @@ def _known_row(state: State, command: Command) -> tuple[int, ToolOffset]:
     return number, state.setup.tools.get(number, ToolOffset())
 
 
-def _with_place(state: State, command: Command, row: ToolOffset, place: Point) -> ToolOffset:
+def _with_offsets(state: State, command: Command, row: ToolOffset, place: Point) -> ToolOffset:
     """The row with these offsets, the radius of an R word and the orientation of a Q word."""
     word = command.words.get("R")
     radius = row.radius_mm if word is None else word.value * state.modes.unit_mm
     turned = command.words.get("Q")
     orientation = row.orientation if turned is None else whole_number(command.block, turned)
     if turned is not None and orientation > LAST_ORIENTATION:
-        problem = f"{turned.text} is no orientation of a lathe tool"
+        problem = f"{turned.text} is not an orientation of a lathe tool"
         raise command.block.error(turned, "bad-value", problem, f"Q0 to Q{LAST_ORIENTATION}")
     return replace(row, x_mm=place[0], y_mm=place[1], length_mm=place[2], radius_mm=radius, orientation=orientation)
 
@@ -216,7 +218,7 @@ _DATA: Mapping[str, Action] = {
     "tool-at-fixture": _set_tool_row_at_fixture,
 }
 
-#: Letters that each kind of data takes beside L and P.
+#: Letters that each kind of data takes in addition to L and P.
 _TAKES: Mapping[str, str] = {
     "zero": "XYZABCR",
     "zero-here": "XYZABCR",

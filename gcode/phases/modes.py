@@ -1,4 +1,4 @@
-"""The phases of a block that move nothing: modes, feed, spindle, tool, coolant, dwell, stops and notices."""
+"""The phases of a block without motion: modes, feed, spindle, tool, coolant, dwell, stops and notices."""
 
 from __future__ import annotations
 
@@ -38,13 +38,15 @@ _ENDS = frozenset({"M2", "M30"})
 
 
 def whole_number(block: ParsedBlock, word: Word) -> int:
-    """The value of a word that counts or names something.
+    """The value of a word that is a count or a number of something.
 
     Raises:
         GcodeError: where it is negative or has a fraction.
     """
     if word.value < 0.0 or word.value != int(word.value):
-        raise block.error(word, "bad-value", f"{word.text} is no whole number of 0 or more", f"{word.letter}0, 1, 2...")
+        raise block.error(
+            word, "bad-value", f"{word.text} is not a whole number of 0 or more", f"{word.letter}0, 1, 2..."
+        )
     return int(word.value)
 
 
@@ -75,7 +77,7 @@ def set_modes(state: State, command: Command) -> Result:
 
 
 def _with_motion(state: State, code: str) -> State:
-    """The state under a motion code; outside of a cycle nothing of the last cycle is remembered."""
+    """The state under a motion code; outside of a cycle nothing of the last cycle is kept."""
     modes = state.modes
     cancels = code == "G80"
     if cancels and state.control.dialect.power_on_motion != "G80":
@@ -97,7 +99,7 @@ def _with_plane(state: State, command: Command, word: Word, plane: int) -> State
 
 
 def set_feed_mode(state: State, command: Command) -> Result:
-    """G93, G94, G95. A feed given in another mode does not hold on."""
+    """G93, G94, G95. A feed of another mode is no longer valid."""
     mode = _FEED_MODES[command.of_phase("feed_mode")[0].rule.code]
     if mode == state.machine.feed_mode:
         return state, ()
@@ -143,11 +145,13 @@ def set_spindle_on(state: State, command: Command) -> Result:
 
 
 def set_spindle_off(state: State, command: Command) -> Result:
-    """M5, and M19 which stops the spindle too."""
+    """M5, and M19, which also stops the spindle."""
     for letter, (least, most) in _ORIENTATION.items():
         word = command.words.get(letter)
         if command.code("M19") and word is not None and not least <= word.value <= most:
-            raise command.block.error(word, "bad-value", f"{word.text} beside M19", f"{letter}{least:g} to {most:g}")
+            raise command.block.error(
+                word, "bad-value", f"{word.text} with M19", f"{letter}{least:g} to {letter}{most:g}"
+            )
     return _set_spindle(state, command, "spindle_off")
 
 
@@ -167,7 +171,7 @@ def _set_spindle(state: State, command: Command, phase: str) -> Result:
 
 
 def spindle_event(state: State, command: Command) -> SpindleChange:
-    """The event that tells the spindle's present state."""
+    """The event that reports the present state of the spindle."""
     machine = state.machine
     return SpindleChange(
         place=command.block.place, spindle_rpm=machine.spindle_rpm, spindle_direction=machine.spindle_direction
@@ -201,7 +205,7 @@ def change_tool(state: State, command: Command) -> Result:
     if tool is None:
         if not state.control.dialect.tool_defaults_to_present:
             text = f"{use.word.text} with no tool selected"
-            raise block.error(use.word, "missing-tool", text, "a T word before or beside it")
+            raise block.error(use.word, "missing-tool", text, "a T word in this block or before it")
         tool = state.machine.tool
     events: tuple[Event, ...] = ()
     if state.machine.spindle_direction:
@@ -266,7 +270,7 @@ def stop(state: State, command: Command) -> Result:
 
 
 def notice(state: State, command: Command) -> Result:
-    """Codes that are understood and move nothing."""
+    """Codes that are understood and cause no motion."""
     return state, tuple(
         Notice(
             place=command.block.place_of(use.word),

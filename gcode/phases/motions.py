@@ -1,4 +1,4 @@
-"""Straight motions: G0, G1, G53, spindle-synchronised ones; and which function makes which motion."""
+"""The motion of a block: G0, G1, G53 and spindle-synchronised motions here, arcs, splines and cycles elsewhere."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _machine_move(state: State, command: Command) -> Result:
 
 
 def _replaced(point: Point, command: Command, unit_mm: float) -> Point:
-    """`point` with the coordinates that the block's axis words give, taken as they stand."""
+    """`point` with the coordinates of the block's axis words, unchanged."""
     x, y, z = (
         command.words[axis].value * unit_mm if axis in command.words else old
         for axis, old in zip(AXES, point, strict=True)
@@ -112,14 +112,14 @@ def _rigid_tap(state: State, command: Command) -> Result:
 def _pitch_feed(state: State, command: Command) -> float:
     feed = command.words.get("F")
     if feed is not None:
-        problem = f"{feed.text} beside {state.modes.motion}, whose feed is its pitch at the spindle's speed"
+        problem = f"{feed.text} together with {state.modes.motion}, whose feed is pitch times spindle speed"
         raise command.block.error(feed, "unused-word", problem, "F in another block")
     word = command.words.get("K")
     if word is None or word.value == 0.0:
         problem = f"{state.modes.motion} without a pitch"
         raise command.block.error(word, "missing-word", problem, "K and the length of path to a turn")
     if not state.machine.spindle_direction:
-        problem = f"{state.modes.motion} while the spindle stands"
+        problem = f"{state.modes.motion} while the spindle is stopped"
         raise command.block.error(None, "spindle-stopped", problem, "M3 or M4 before it")
     return abs(word.value) * state.modes.unit_mm * state.machine.spindle_rpm
 

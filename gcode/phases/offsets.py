@@ -51,7 +51,7 @@ def additional_offset(state: State, command: Command, word: Word) -> str:
     number, most = whole_number(command.block, word), state.control.dialect.additional_offsets
     if not 1 <= number <= most:
         expected = f"P1 to P{most}"
-        raise command.block.error(word, "bad-value", f"{word.text} is no additional work offset", expected)
+        raise command.block.error(word, "bad-value", f"{word.text} is not an additional work offset", expected)
     return f"G54.1 P{number}"
 
 
@@ -147,7 +147,7 @@ def set_shift(state: State, command: Command) -> Result:
 
 
 def _local(state: State, command: Command) -> Result:
-    """G52: the zero lies at the given place of the work offset; axes without a word keep theirs."""
+    """G52: the zero is at the given position of the work offset; axes without a word keep theirs."""
     if not any(axis in command.words for axis in AXES + EXTRA_AXES):
         return _without_axes(state, command)
     if state.control.dialect.shift_is_rotated:

@@ -17,26 +17,26 @@ POLAR_LETTERS = "@^"
 def as_axis_words(state: State, command: Command) -> Command:
     """The block with X and Y words in place of its polar ones.
 
-    The one that is not given is as where the tool stands, and with G91 both are counted from there.
+    A missing one is that of the present position, and with G91 both are counted from there.
 
     Raises:
-        GcodeError: beside X, Y or G53, in an arc of another plane than XY, in an incremental cycle that is repeated,
-            and at the zero, which has no angle, where an angle is needed.
+        GcodeError: together with X, Y or G53, in an arc of another plane than XY, in an incremental cycle that is
+            repeated, and at X0 Y0, which has no angle, where an angle is needed.
     """
     polar = [command.words[letter] for letter in POLAR_LETTERS if letter in command.words]
     if not polar:
         return command
     first = polar[0]
     machine_move = command.code("G53")
-    beside = command.words.get("X") or command.words.get("Y") or (machine_move and machine_move.word)
-    if beside:
-        problem = f"{first.text} beside {beside.text}"
+    other = command.words.get("X") or command.words.get("Y") or (machine_move and machine_move.word)
+    if other:
+        problem = f"{first.text} together with {other.text}"
         raise command.block.error(first, "polar-words", problem, "polar words without X, Y and G53")
     if state.modes.motion in ("G2", "G3") and state.machine.plane != 17:
         problem = f"{first.text} in an arc in plane G{state.machine.plane}"
         raise command.block.error(first, "polar-words", problem, "G17")
     if "L" in command.words and not state.modes.absolute:
-        problem = f"{first.text} with G91 beside {command.words['L'].text}"
+        problem = f"{first.text} with G91 together with {command.words['L'].text}"
         raise command.block.error(first, "polar-words", problem, "a block for each hole, or G90")
     x, y = _target(state, command, first)
     words = {letter: word for letter, word in command.words.items() if letter not in POLAR_LETTERS}
@@ -44,7 +44,7 @@ def as_axis_words(state: State, command: Command) -> Command:
 
 
 def _target(state: State, command: Command, first: Word) -> tuple[float, float]:
-    """Numbers of the X and Y words that lead to the place."""
+    """Numbers of the X and Y words of the target."""
     modes = state.modes
     here_x, here_y, _ = (coordinate / modes.unit_mm for coordinate in state.program_mm)
     distance, angle = math.hypot(here_x, here_y), math.degrees(math.atan2(here_y, here_x))

@@ -17,7 +17,7 @@ from gcode.phases.straight_motion import straight
 
 
 def return_to_reference(state: State, command: Command) -> Result:
-    """The one of this family that the block holds."""
+    """Executes the code of this family in the block."""
     use = command.of_phase("reference")[0]
     if state.compensates:
         problem = f"{use.word.text} while cutter compensation is on"
@@ -39,7 +39,7 @@ def _named(state: State, command: Command) -> frozenset[str]:
 
 
 def _return(state: State, command: Command) -> Result:
-    """G28, G30: the named axes go by way of the programmed point to the reference point, at rapid."""
+    """G28, G30: the named axes move at rapid through the programmed point to the reference point."""
     named = _named(state, command)
     first = programmed_end(state, command, adds_length=False)
     via, to_via = straight(state, command, first, rapid=True, extra=extra_end(state, command))
@@ -53,9 +53,9 @@ def _return(state: State, command: Command) -> Result:
 
 
 def _home(state: State, point: Point, named: frozenset[str]) -> Point:
-    """Controlled point at the reference point `point` in the named axes, and as it is in the others.
+    """Controlled point at the reference point `point` in the named axes, and unchanged in the others.
 
-    The axes are those of the machine, or in LinuxCNC those of the program, which G10 L2 R may have turned.
+    The axes are those of the machine, or in LinuxCNC those of the program, which G10 L2 R may have rotated.
     """
     if not state.control.dialect.shift_is_rotated:
         x, y, z = _only(AXES, named, point, state.gauge_mm)
@@ -79,7 +79,7 @@ def _reference_point(state: State, command: Command) -> tuple[Point, Extra]:
     if word is not None:
         number = whole_number(command.block, word)
         if not 2 <= number <= 4:
-            raise command.block.error(word, "bad-value", f"{word.text} is no reference point", "P2, P3 or P4")
+            raise command.block.error(word, "bad-value", f"{word.text} is not a reference point", "P2, P3 or P4")
     points = state.setup.references
     if number in points:
         return points[number]
@@ -104,7 +104,7 @@ def _check(state: State, command: Command) -> Result:
 
 
 def _return_from(state: State, command: Command) -> Result:
-    """G29: the named axes go by way of the intermediate point of the last G28 or G30 to the programmed point."""
+    """G29: the named axes move through the intermediate point of the last G28 or G30 to the programmed point."""
     named = _named(state, command)
     via = state.modes.via_mm
     if via is None:
@@ -117,12 +117,12 @@ def _return_from(state: State, command: Command) -> Result:
 
 
 def _one_sided(state: State, command: Command) -> Result:
-    """G60: a rapid; the overrun by which the control takes up backlash is not known and left out."""
+    """G60: a rapid; the overrun that takes up backlash is not known and is omitted."""
     return straight(state, command, programmed_end(state, command), rapid=True)
 
 
 def _store(state: State, command: Command) -> Result:
-    """G28.1, G30.1: the place where the machine stands becomes the reference point."""
+    """G28.1, G30.1: the present position becomes the reference point."""
     number = 1 if command.of_phase("reference")[0].rule.code == "G28.1" else 2
     points = {**state.setup.references, number: (state.gauge_mm, state.extra)}
     return state.with_setup(references=MappingProxyType(points)), ()

@@ -66,7 +66,7 @@ def quadratic_spline(state: State, command: Command) -> Result:
 
 
 def _curve(state: State, command: Command, controls: list[tuple[float, float]], end: Point) -> Result:
-    """The curve as straight motions; along z the way is even over them."""
+    """The curve as straight motions; z changes uniformly along them."""
     events: list[Event] = []
     height = state.program_mm[2]
     for piece in range(1, CURVE_PIECES + 1):
@@ -97,7 +97,7 @@ def _plane(state: State, command: Command) -> None:
 def _needed(state: State, command: Command, letter: str) -> float:
     word = command.words.get(letter)
     if word is None:
-        raise _missing(command, None, f"{letter} beside {state.modes.motion}")
+        raise _missing(command, None, f"{letter} with {state.modes.motion}")
     return word.value * state.modes.unit_mm
 
 

@@ -1,4 +1,4 @@
-"""One straight motion as an event; what every other kind of motion is made of."""
+"""One straight motion as an event."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def straight(
     extra: Extra | None = None,
     tapping: bool = False,
 ) -> Result:
-    """A straight motion to `end` (controlled point, machine coordinates), also where that is where the tool is."""
+    """A straight motion to `end` (controlled point, machine coordinates), also where the tool is there already."""
     start = state.position_mm
     feed = 0.0 if rapid else feed_mm_min(state, command, math.dist(start, end))
     state = settled(state, command)

@@ -17,14 +17,14 @@ _NAME_OF_CODE: Mapping[str, str] = {"G50": "scaling", "G50.1": "mirror", "G69": 
 
 
 def set_transform(state: State, command: Command) -> Result:
-    """Codes that turn, scale, mirror or bend program coordinates."""
+    """Codes that rotate, scale or mirror program coordinates, or make them polar."""
     for use in command.of_phase("transform"):
         state = _SETTERS[use.rule.code](state, command, use)
     return state, ()
 
 
 def clear_transform(state: State, command: Command) -> Result:
-    """Codes that end it."""
+    """Codes that cancel them."""
     for use in command.of_phase("transform_off"):
         if use.rule.code == "G15":
             state = state.with_modes(polar=False, polar_centre_mm=None)
@@ -63,9 +63,9 @@ def _centre(state: State, command: Command, name: str) -> Point:
 
 
 def _rotate(state: State, command: Command, use: Use) -> State:
-    """G68: about the given point of the plane, by R degrees counter-clockwise, which replaces what held.
+    """G68: about the given point of the plane, by R degrees counter-clockwise; replaces an active rotation.
 
-    Under a mirror image of one of the plane's axes it turns the other way round.
+    Under a mirror image of one of the plane's axes it rotates in the opposite direction.
     """
     word = command.words.get("R")
     if word is None:
@@ -86,7 +86,7 @@ def _scale(state: State, command: Command, use: Use) -> State:
     words = command.words
     given = [letter for letter in "IJK" if letter in words]
     if "P" in words and given:
-        problem = f"{words['P'].text} beside {words[given[0]].text}"
+        problem = f"{words['P'].text} together with {words[given[0]].text}"
         raise command.block.error(words["P"], "scaling-two", problem, "P for all axes, or I, J, K")
     if "P" not in words and not given:
         raise command.block.error(use.word, "missing-word", f"{use.word.text} without a factor", "P, or I, J, K")
@@ -102,7 +102,7 @@ def _factor(command: Command, letter: str) -> float:
         return 1.0
     value = word.value if word.has_point else word.value * _SCALE_UNIT
     if value == 0.0:
-        raise command.block.error(word, "bad-value", f"{word.text} is no scale factor", "a factor that is not 0")
+        raise command.block.error(word, "bad-value", f"{word.text} is not a scale factor", "a factor that is not 0")
     return value
 
 

@@ -1,1 +1,1 @@
-"""What is said about a program: statistics, JSON, plots, places with a caret."""
+"""Reports about a program: motions as arrays and JSON, statistics, plots, geometry of paths."""

@@ -1,4 +1,4 @@
-"""A program's motions as arrays: the same as the motion events, without an object for each."""
+"""Motions of a program as arrays: equal to the motion events, without an object for each."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from gcode.events import NO_EXTRA, ArcMotion, Dwell, Event, Extra, LinearMotion,
 from gcode.flow.interpreter import ProgramSource, run
 from gcode.settings import MachineSettings
 
-#: Most motions of one `MotionArrays`, where nothing else is said.
+#: Default of the motions in one `MotionArrays`.
 ROWS = 65_536
 _NO_CENTRE: Point = (np.nan, np.nan, np.nan)
 
@@ -48,7 +48,7 @@ class MotionArrays:
         turns: (n,) signed turns of arcs as in `ArcMotion`, 0 for others.
         feed_mm_min: (n,) speed along the path, 0 for rapids and dwells.
         seconds: (n,) length of dwells, 0 for others.
-        extra: (n, 6) where the axes A, B, C (degrees), U, V, W (mm) stand at the end.
+        extra: (n, 6) where the axes A, B, C (degrees), U, V, W (mm) at the end.
         state: (n,) index of each motion's modal values in `states`.
         file: (n,) index of each motion's file in `files`.
         states: modal values, each combination once.
@@ -170,7 +170,7 @@ def concatenate(parts: Iterable[MotionArrays]) -> MotionArrays:
 
 
 def _joined(parts: Sequence[tuple[NDArray[np.int32], tuple[Any, ...]]]) -> tuple[NDArray[np.int32], tuple[Any, ...]]:
-    """Indices into several tables as indices into one, in which each value that is used stands once."""
+    """Indices into several tables as indices into one, in which each value in use is listed once."""
     table: dict[Any, int] = {}
     columns = [np.empty(0, np.int32)]
     for index, values in parts:
@@ -224,7 +224,7 @@ class _Collector:
                 self._close_rows()
 
     def full(self) -> Iterator[MotionArrays]:
-        """What there is enough of."""
+        """The arrays that are complete."""
         if self._count < self._wanted:
             return
         whole = concatenate(self._parts)
@@ -235,7 +235,7 @@ class _Collector:
         self._count = len(whole) - stop
 
     def rest(self) -> Iterator[MotionArrays]:
-        """What is left at the end."""
+        """The remaining motions at the end."""
         self._close_rows()
         yield from self.full()
         if self._count:

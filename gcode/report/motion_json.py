@@ -1,4 +1,4 @@
-"""Motions as JSON objects, one each: what `gcode motions` prints."""
+"""Motions as JSON objects, as `gcode motions` prints them."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ DECIMALS = 9
 
 
 def motion_objects(events: Iterable[Event], start_mm: Point = (0.0, 0.0, 0.0)) -> Iterator[dict[str, Any]]:
-    """The motions and dwells among events as JSON objects; other events have none.
+    """The motions and dwells among events as JSON objects; other events are skipped.
 
     Args:
-        start_mm: controlled point before the first motion, in machine coordinates; where a dwell before it is.
+        events: of a program.
+        start_mm: controlled point before the first motion, in machine coordinates; also of a dwell before it.
 
     Yields:
         `motion_object` of each.
@@ -34,6 +35,7 @@ def motion_object(event: LinearMotion | ArcMotion | Dwell, at_mm: Point) -> dict
     """One motion or dwell as a JSON object.
 
     Args:
+        event: a motion or dwell.
         at_mm: controlled point at its end.
 
     Returns:
@@ -90,7 +92,7 @@ def _of_its_type(event: LinearMotion | ArcMotion | Dwell) -> dict[str, Any]:
 
 
 def _number(value: float) -> float:
-    """Without digits that mean nothing, and without a negative zero."""
+    """Rounded to `DECIMALS`, without a negative zero."""
     return round(value, DECIMALS) + 0.0
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gcode.events import PLANE_AXES, ArcMotion, Motion, Point
 
-#: Most chords that one arc is stepped into.
+#: Most chords of one arc.
 MOST_CHORDS = 100_000
 #: Steps towards the turning points of a spiral; each divides the error by 5 even where r' is half of r.
 _STEPS = 20
@@ -26,7 +26,7 @@ class _Spiral:
         sweep_rad: signed angle swept.
         start_mm: radius at the start.
         end_mm: radius at the end.
-        rise_mm: way along the plane's normal.
+        rise_mm: length along the plane's normal.
     """
 
     start_rad: float
@@ -70,7 +70,7 @@ def length_mm(motion: Motion) -> float:
 
 
 def extremes_mm(motion: Motion) -> tuple[Point, Point]:
-    """Least and largest coordinates that a motion comes to: of an arc those of its path, not of its ends."""
+    """Least and largest coordinates of a motion; for an arc those of its path, not of its ends."""
     low = [min(a, b) for a, b in zip(motion.start_mm, motion.end_mm, strict=True)]
     high = [max(a, b) for a, b in zip(motion.start_mm, motion.end_mm, strict=True)]
     if isinstance(motion, ArcMotion):
@@ -83,7 +83,7 @@ def extremes_mm(motion: Motion) -> tuple[Point, Point]:
 
 
 def _turning_points(spiral: _Spiral, phase_rad: float) -> Iterator[float]:
-    """Coordinates along one direction where the path turns back; of those of many turns, the outermost of each side."""
+    """Coordinates of the turning points along one direction; of those of many turns, the outermost of each side."""
     least, most = sorted((0.0, spiral.sweep_rad))
     first = math.ceil((spiral.start_rad + least - phase_rad) / math.pi)
     last = math.floor((spiral.start_rad + most - phase_rad) / math.pi)
@@ -105,10 +105,11 @@ def points_mm(motion: Motion, tolerance_mm: float) -> NDArray[np.float64]:
     """Points along a motion, both ends included.
 
     Args:
-        tolerance_mm: how far the chords between them may lie off an arc, > 0.
+        motion: a straight motion or an arc.
+        tolerance_mm: largest distance of the chords from an arc, > 0.
 
     Returns:
-        One row of x, y, z a point; the first and last are the motion's ends to the last digit.
+        One row of x, y, z per point; the first and last are the motion's ends to the last digit.
     """
     if not isinstance(motion, ArcMotion):
         return np.array((motion.start_mm, motion.end_mm))

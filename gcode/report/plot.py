@@ -239,5 +239,5 @@ def _draw_box(axes: Axes, low: _Array, high: _Array, view: View) -> None:
         ends = np.array((low, far)) @ _PROJECTIONS[view].T
         axes.plot(*ends.T, color="#c4c7cc", linewidth=0.8, zorder=0)
         text = f"{name} {low[axis]:.6g} to {high[axis]:.6g}"
-        behind = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8}
-        axes.annotate(text, ends.mean(axis=0), fontsize=7, color=_INK, ha="center", va="center", zorder=3, bbox=behind)
+        frame = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8}
+        axes.annotate(text, ends.mean(axis=0), fontsize=7, color=_INK, ha="center", va="center", zorder=3, bbox=frame)

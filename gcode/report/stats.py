@@ -1,4 +1,4 @@
-"""What a program does, in sums: lengths, times, the space it needs, feeds and speeds of each tool."""
+"""Statistics of a program: lengths, times, travel range, feeds and speeds of each tool."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from gcode.events import ArcMotion, Block, Dwell, Event, LinearMotion, Motion, M
 from gcode.report.motion_json import type_of
 from gcode.report.path_geometry import extremes_mm, length_mm
 
-#: Rate of positioning motions where none is given, mm/min.
+#: Default rapid rate, mm/min.
 RAPID_MM_MIN = 10_000.0
-#: So many different feeds or speeds are kept one by one; of more, the least and the largest.
+#: Most different feeds or speeds that are kept one by one; of more, the least and the largest.
 MOST_VALUES = 50
-#: Kinds of motion, in the order they are told in.
+#: Kinds of motion, in the order of reports.
 TYPES = ("rapid", "feed", "arc", "tap", "dwell")
 
 
@@ -54,9 +54,9 @@ class MotionTotals:
 
     Attributes:
         cutting_mm: length of motions at a feed.
-        rapid_mm: length of positioning motions.
+        rapid_mm: length of rapids.
         cutting_s: time of motions at a feed.
-        rapid_s: time of positioning motions at the given rate.
+        rapid_s: time of rapids at the given rate.
         dwell_s: time of dwells.
         motions: how many there are of each type, those of `TYPES` that occur.
         feeds_mm_min: feeds used, None without any.
@@ -85,7 +85,7 @@ class MotionTotals:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramStats:
-    """A program in sums.
+    """Statistics of a program.
 
     Attributes:
         total: the whole program.
@@ -93,10 +93,10 @@ class ProgramStats:
         cutting_box: of all motions at a feed, None without any.
         box: of all motions, None without any.
         blocks: blocks executed.
-        tool_changes: how often M6 was done.
+        tool_changes: number of tool changes.
         untimed: motions with a length at a feed of 0; their time is not in the sums.
-        notices: words that were understood and have no effect on motion.
-        rapid_mm_min: rate of positioning motions that the times are for.
+        notices: words that have no effect on motion.
+        rapid_mm_min: rapid rate that the times are for.
     """
 
     total: MotionTotals
@@ -111,11 +111,11 @@ class ProgramStats:
 
 
 def program_stats(events: Iterable[Event], rapid_mm_min: float = RAPID_MM_MIN) -> ProgramStats:
-    """Sums up a program; memory stays flat however long it is.
+    """Sums up a program; memory does not grow with its length.
 
     Args:
         events: of the program, from its start.
-        rapid_mm_min: speed along the path of positioning motions, mm/min.
+        rapid_mm_min: rapid rate along the path, mm/min.
 
     Raises:
         ValueError: for a rate that is not positive and finite.
@@ -217,7 +217,7 @@ class _Program:
         self._blocks = self._tool_changes = self._untimed = self._notices = 0
 
     def add(self, event: Event) -> None:
-        """Take one event into the sums."""
+        """Adds one event to the totals."""
         if isinstance(event, LinearMotion | ArcMotion):
             self._motion(event)
         elif isinstance(event, Dwell):
@@ -250,7 +250,7 @@ class _Program:
                 sums.add_cut(length, seconds, event.feed_mm_min, event.state)
 
     def stats(self) -> ProgramStats:
-        """The sums so far."""
+        """The totals so far."""
         return ProgramStats(
             total=self._total.done(),
             tools={number: sums.done() for number, sums in self._tools.items()},

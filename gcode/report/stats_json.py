@@ -1,4 +1,4 @@
-"""Program statistics as one JSON object: what `gcode stats --json` prints."""
+"""Program statistics as one JSON object, as `gcode stats --json` prints it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from gcode.report.stats import Box, MotionTotals, ProgramStats, ValueSet
 
 
 def stats_object(stats: ProgramStats) -> dict[str, Any]:
-    """A program in sums; units stand in the names, and what there is not is null."""
+    """Statistics of a program as a JSON object; units are in the names, and missing values are null."""
     return {
         **_sums(stats.total),
         "rapid_mm_min": stats.rapid_mm_min,

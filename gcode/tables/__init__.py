@@ -1,4 +1,4 @@
-"""What a user keeps beside programs: tool tables, parameter files, and settings of the machine.
+"""Files about the machine: tool tables, parameter files, and settings.
 
 | file | read by | holds |
 | --- | --- | --- |
@@ -7,8 +7,8 @@
 | ``.var`` | `read_parameters` | numbered parameters of LinuxCNC, lengths in the machine's unit |
 | ``.toml`` | `read_settings` | any field of `gcode.settings.MachineSettings` |
 
-All of them refuse a file with one `gcode.errors.GcodeError` that names file, line and column, the value, and what was
-expected.
+All of them refuse a file with one `gcode.errors.GcodeError` that names file, line and column, the value, and the
+expected value.
 """
 
 from gcode.tables.parameter_file import ParameterFile, read_parameters

@@ -1,4 +1,4 @@
-"""LinuxCNC's parameter file (``.var``): a number and its value a line.
+"""LinuxCNC's parameter file (``.var``): a number and its value per line.
 
 | parameters | hold |
 | --- | --- |
@@ -42,11 +42,11 @@ _LINE = "a parameter number and its value, such as 5221 1.5"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParameterFile:
-    """What a parameter file says. Lengths are mm, but for `variables`.
+    """The contents of a parameter file. Lengths are mm, except in `variables`.
 
     Attributes:
         variables: all parameters of the file by number, as written: lengths in the machine's unit.
-        offsets: places of the nine work zeros, 0 where the file has none.
+        offsets: positions of the nine work zeros, 0 where the file has none.
         rotations_deg: rotation of each about z, counter-clockwise.
         home_mm: gauge point of G28.
         reference_points_mm: gauge point of G30, by the number 2.
@@ -65,7 +65,7 @@ class ParameterFile:
     g92_holds: bool
 
     def applied_to(self, settings: MachineSettings) -> MachineSettings:
-        """These settings with all that the file says in place of theirs; variables it does not name stay."""
+        """The settings with the values of the file in place of theirs; variables that it does not list are kept."""
         return replace(
             settings,
             offsets=self.offsets,
@@ -86,9 +86,9 @@ def read_parameters(path: Path | str, units: Unit = "mm") -> ParameterFile:
         units: the machine's unit of length, which the file is in.
 
     Raises:
-        GcodeError: for a file that cannot be read, a line that is no number and value (``parameter-line``), a number
-            that no parameter has (``parameter-number``), a parameter given twice (``parameter-duplicate``), and an
-            active system that is none of 1 to 9 (``parameter-system``).
+        GcodeError: for a file that cannot be read, a line without a number and a value (``parameter-line``), a number
+            outside the parameters (``parameter-number``), a parameter given twice (``parameter-duplicate``), and an
+            active system other than 1 to 9 (``parameter-system``).
     """
     path = Path(path)
     values: dict[int, float] = {}
@@ -98,7 +98,7 @@ def read_parameters(path: Path | str, units: Unit = "mm") -> ParameterFile:
             continue
         number, value = _line(place)
         if number in values:
-            problem = f"parameter {number} again; it stands in line {places[number].line} already"
+            problem = f"parameter {number} is given twice; line {places[number].line} has it already"
             raise error_at(place, 0, "parameter-duplicate", problem, "each parameter once")
         values[number], places[number] = value, place
     _check_active(values, places)
@@ -118,7 +118,7 @@ def _line(place: Place) -> tuple[int, float]:
     value, end = number_at(place, found.end(), f"parameter {number}", "parameter-line")
     rest = place.text[end:].lstrip()
     if rest and (rest[0] not in "#;"):
-        problem = f"{token_at(place.text, end)!r} behind the value of parameter {number}"
+        problem = f"{token_at(place.text, end)!r} after the value of parameter {number}"
         raise error_at(place, len(place.text) - len(rest), "parameter-line", problem, _LINE)
     return number, value
 

@@ -39,7 +39,7 @@ def read_settings(path: Path | str) -> MachineSettings:
         path: a ``.toml`` file. Folders in its ``search_path`` are relative to its own.
 
     Raises:
-        GcodeError: for a file that cannot be read, a text that is no TOML (``settings-syntax``), an unknown key
+        GcodeError: for a file that cannot be read, a text that is not TOML (``settings-syntax``), an unknown key
             (``settings-key``), and a value that is not as expected (``settings-value``).
     """
     path = Path(path)
@@ -54,7 +54,7 @@ def tools_of(top: Node, *, only: bool = False) -> dict[int, ToolOffset]:
     """The tools of a document, by number.
 
     Args:
-        only: refuse every other key.
+        only: refuse any other key.
     """
     nodes = dict(top.known(("tools",)) if only else top.table())
     return _tools(nodes["tools"]) if "tools" in nodes else {}
@@ -70,7 +70,9 @@ def _tool(node: Node) -> ToolOffset:
     for diameter, radius in _DIAMETERS.items():
         if diameter in nodes:
             if radius in nodes:
-                raise nodes[diameter].error(f"{diameter} beside {radius} in {node.name}", "one of them", at_key=True)
+                raise nodes[diameter].error(
+                    f"{diameter} together with {radius} in {node.name}", "one of them", at_key=True
+                )
             values[radius] = nodes[diameter].number() / 2.0
     return ToolOffset(**values)
 
@@ -80,7 +82,7 @@ def _offset_name(key: str, node: Node) -> str:
     name = _ADDITIONAL.sub(r"\1 \2", key.strip().upper())
     if name not in ALL_OFFSETS:
         expected = f"G54 to G59, G59.1 to G59.3, or {ALL_OFFSETS[-1].replace(' P', ' P1 to P')}"
-        raise node.error(f"{key!r} is no work offset", expected, at_key=True)
+        raise node.error(f"{key!r} is not a work offset", expected, at_key=True)
     return name
 
 
@@ -107,7 +109,7 @@ def _rotations(node: Node) -> dict[str, float]:
 
 
 def _reference_points(node: Node) -> dict[int, Point]:
-    return {number: point.point() for number, point in node.numbered("reference point behind the first", 2)}
+    return {number: point.point() for number, point in node.numbered("number of a reference point after the first", 2)}
 
 
 def _variables(node: Node) -> dict[int, float]:
@@ -128,7 +130,7 @@ def _choice(*allowed: str) -> Callable[[Node], str]:
     return lambda node: node.text(*allowed)
 
 
-#: What reads each field of `ToolOffset`.
+#: Reader of each field of `ToolOffset`.
 _TOOL_FIELDS: Mapping[str, Callable[[Node], Any]] = MappingProxyType(
     {
         **{f.name: Node.number for f in fields(ToolOffset) if f.name.endswith("_mm")},
@@ -137,10 +139,10 @@ _TOOL_FIELDS: Mapping[str, Callable[[Node], Any]] = MappingProxyType(
         "comment": Node.text,
     }
 )
-#: Diameters may stand in place of radii.
+#: Diameters may replace radii.
 _DIAMETERS: Mapping[str, str] = MappingProxyType({"diameter_mm": "radius_mm", "diameter_wear_mm": "radius_wear_mm"})
 
-#: What reads each field of `MachineSettings`.
+#: Reader of each field of `MachineSettings`.
 _FIELDS: Mapping[str, Callable[[Node], Any]] = MappingProxyType(
     {
         "offsets": _offsets,

@@ -1,4 +1,4 @@
-"""Small text files as lines with their places, and numbers in them."""
+"""Small text files as lines with their locations, and numbers in them."""
 
 from __future__ import annotations
 
@@ -53,13 +53,13 @@ def read_text(path: Path, suffixes: Iterable[str]) -> str:
 
 
 def lines_of(path: Path, text: str) -> Iterator[Place]:
-    """The places of a text's lines; only line feeds, with or without a carriage return, end a line."""
+    """The lines of a text with their locations; only line feeds, with or without a carriage return, end a line."""
     for number, line in enumerate(text.split("\n"), start=1):
         yield Place(file=str(path), line=number, text=line.rstrip("\r"))
 
 
 def token_at(text: str, index: int) -> str:
-    """What stands at an index up to the next blank, to be named in a message."""
+    """The text at an index up to the next blank, for messages."""
     found = _TOKEN.search(text, index)
     return found.group()[:40] if found else ""
 
@@ -70,7 +70,7 @@ def error_at(place: Place, index: int, code: str, problem: str, expected: str) -
 
 
 def number_at(place: Place, index: int, what: str, code: str) -> tuple[float, int]:
-    """The number at an index of a line, and the index behind it.
+    """The number at an index of a line, and the index after it.
 
     Args:
         what: names the number in the message, e.g. ``Z``.
@@ -81,6 +81,6 @@ def number_at(place: Place, index: int, what: str, code: str) -> tuple[float, in
     """
     found = NUMBER.match(place.text, index)
     if found is None or not math.isfinite(float(found.group())):
-        problem = f"{what} with {token_at(place.text, index) or 'nothing'} behind it"
+        problem = f"{what} with {token_at(place.text, index) or 'nothing'} after it"
         raise error_at(place, index, code, problem, "a finite decimal number")
     return float(found.group()), found.end()

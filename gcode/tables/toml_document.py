@@ -1,4 +1,4 @@
-"""TOML documents whose entries know their place, so that a wrong value is named with its line and column."""
+"""TOML documents whose entries have locations, so that errors name line and column."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Node:
     Attributes:
         value: as `tomllib` gives it.
         keys: keys from the top that lead to it.
-        entries: places of the whole document's keys.
+        entries: locations of all keys of the document.
     """
 
     value: Any
@@ -125,7 +125,7 @@ class Node:
         for key, node in self.table():
             if not key.isascii() or not key.isdigit() or len(key) > 9 or int(key) < least or key != str(int(key)):
                 raise node.error(
-                    f"{node.name}: {key!r} is no {what}", f"a whole number of {least} or more", at_key=True
+                    f"{node.name}: {key!r} is not a {what}", f"a whole number of {least} or more", at_key=True
                 )
             yield int(key), node
 
@@ -134,7 +134,7 @@ def load_document(path: Path, text: str) -> Node:
     """The top table of a document.
 
     Raises:
-        GcodeError: for a text that is no TOML (``settings-syntax``).
+        GcodeError: for a text that is not TOML (``settings-syntax``).
     """
     lines = list(lines_of(path, text))
     try:

@@ -1,6 +1,6 @@
 """Tool tables: LinuxCNC's ``.tbl``, and ``.toml``.
 
-A ``.tbl`` row is words in any order and a comment behind a semicolon: ``T1 P1 Z0.511 D0.125 ;1/8 end mill``. T is the
+A ``.tbl`` row is words in any order and a comment after a semicolon: ``T1 P1 Z0.511 D0.125 ;1/8 end mill``. T is the
 tool's number, P its pocket, X Y Z its offsets, D its diameter, Q the orientation of a lathe tool and I J its angles,
 which motions do not depend on.
 """
@@ -18,7 +18,7 @@ from gcode.tables.settings_file import tools_of
 from gcode.tables.text_file import MM_PER_UNIT, Unit, error_at, lines_of, number_at, read_text, token_at
 from gcode.tables.toml_document import load_document
 
-#: Field of `ToolOffset` that a word of a row gives, and what its number is multiplied by beside the unit.
+#: Field of `ToolOffset` of each word of a row, and the factor of its number in addition to the unit.
 _FIELDS: Mapping[str, tuple[str, float]] = MappingProxyType(
     {"X": ("x_mm", 1.0), "Y": ("y_mm", 1.0), "Z": ("length_mm", 1.0), "D": ("radius_mm", 0.5)}
 )
@@ -48,7 +48,7 @@ def read_tool_table(path: Path | str, units: Unit = "mm") -> dict[int, ToolOffse
 
     Raises:
         GcodeError: for a file that cannot be read, an old table of columns (``tool-table-format``), a letter that no
-            row has or a word that is no number (``tool-table-word``), a number that is not whole
+            row has or a word that is not a number (``tool-table-word``), a number that is not whole
             (``tool-table-number``), a row without T (``tool-table-row``), a tool or word given twice
             (``tool-table-duplicate``), an offset along a rotary or parallel axis (``tool-table-axis``), and for what
             `read_settings` refuses.
@@ -65,7 +65,7 @@ def read_tool_table(path: Path | str, units: Unit = "mm") -> dict[int, ToolOffse
             continue
         number = _number(place, words)
         if number in rows:
-            problem = f"T{number} again; it stands in line {lines[number]} already"
+            problem = f"T{number} is given twice; line {lines[number]} has it already"
             raise error_at(place, words["T"][1], "tool-table-duplicate", problem, "each tool once")
         rows[number], lines[number] = _row(place, words, MM_PER_UNIT[units]), place.line
     return rows
@@ -75,14 +75,14 @@ def _words(place: Place) -> dict[str, tuple[float, int]]:
     """Number and index of each word of a row, by letter; empty for a line without words."""
     text = place.text.partition(";")[0]
     if _OLD_HEADER.match(text) or _OLD_ROW.match(text):
-        problem = "an old table of columns, which LinuxCNC does not read any more"
+        problem = "an old table of columns, which LinuxCNC no longer reads"
         raise error_at(place, 0, "tool-table-format", problem, _ROW)
     words: dict[str, tuple[float, int]] = {}
     index = _skip_blanks(text, 0)
     while index < len(text):
         letter = text[index].upper()
         if letter not in _LETTERS:
-            problem = f"{token_at(text, index)!r} is no word of a tool table"
+            problem = f"{token_at(text, index)!r} is not a word of a tool table"
             raise error_at(place, index, "tool-table-word", problem, _ROW)
         if letter in words and letter not in _REPEATABLE:
             raise error_at(place, index, "tool-table-duplicate", f"{letter} twice in one row", "each word once")

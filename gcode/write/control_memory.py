@@ -1,4 +1,4 @@
-"""The control that will read the program, as far as what it holds decides which words must be written."""
+"""The modal memory of the control that will read the program: it determines which words must be written."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ class LengthOffset:
 
     @property
     def vector_mm(self) -> Point:
-        """What lies between the gauge point and the controlled point."""
+        """The gauge point less the controlled point."""
         return (*self.xy_mm, self.length_mm)
 
 
 @dataclass(slots=True)
 class ControlMemory:
-    """What the words so far have set.
+    """The state that the words written so far have set.
 
     Attributes:
         options: how the program is written.
@@ -35,14 +35,14 @@ class ControlMemory:
         index: number of the event that is being written.
         words: last word of each modal group and of F and S.
         at: where the controlled point is, None before the first motion.
-        at_mm: the same as the stream says it, machine coordinates.
+        at_mm: the same as the events give it, machine coordinates.
         tool: tool in the spindle.
         direction: how the spindle turns, as in `MotionState`.
         mist: coolant.
         flood: coolant.
         length: length offset.
-        state: the last motion's, where all that it holds has been said; None behind an event that changes that.
-        unsure: True where the machine may stand elsewhere, so that the next motion names all axes in G90.
+        state: the last motion's, where all of it is written; None after an event that changes it.
+        unsure: True where the machine may be elsewhere, so that the next motion names all axes in G90.
         ended: the program's end has been written.
     """
 
@@ -63,7 +63,7 @@ class ControlMemory:
     _number: int = 0
 
     def modal(self, group: str, word: str) -> list[str]:
-        """A modal word, where the control does not hold it already or every word is wanted."""
+        """A modal word, where the control does not hold it already or every word is to be written."""
         if self.options.modal and self.words.get(group) == word:
             return []
         self.words[group] = word
@@ -94,7 +94,7 @@ class EventStream:
     _ahead: list[tuple[int, Event]] = field(default_factory=list)
 
     def take(self) -> tuple[int, Event] | None:
-        """The next event, None behind the last."""
+        """The next event, None after the last."""
         return self._ahead.pop() if self._ahead else next(self.events, None)
 
     def put_back(self, *events: tuple[int, Event]) -> None:

@@ -1,4 +1,4 @@
-"""The error of the writer: which event of the stream cannot be said, and why."""
+"""The error of the writer: the event that cannot be written, and the reason."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from gcode.errors import GcodeError, Place
 
 
 class WriteError(GcodeError):
-    """A stream of events that is refused.
+    """An event that the program cannot express.
 
     Attributes:
-        index: number of the event in the stream, counted from 0; None where no event is at fault, but the file.
+        index: number of the event in the stream, counted from 0; None for an error of the file.
     """
 
     def __init__(self, index: int | None, place: Place, code: str, problem: str, expected: str = "") -> None:

@@ -11,9 +11,9 @@ from gcode.settings import ToolOffset
 from gcode.write.control_memory import ControlMemory, LengthOffset
 from gcode.write.numbers import plain
 
-#: Two places or lengths that are no farther apart than this, mm, are one.
+#: Two positions or lengths that differ by no more than this, mm, are one.
 SAME_MM = 1e-6
-#: Digits after the point of a length that is no row of a table.
+#: Decimals of a length that is not a row of a table.
 _LENGTH_DECIMALS = 7
 _SIGNS: Mapping[str, float] = {"G43": 1.0, "G44": -1.0}
 
@@ -22,10 +22,10 @@ def set_length(control: ControlMemory, event: Motion) -> tuple[list[str], list[s
     """Puts on the length offset of a motion, and checks that the motion begins where the last one ended.
 
     Returns:
-        Words for a block of their own, and words that stand beside the motion.
+        Words for a block of their own, and words for the block of the motion.
 
     Raises:
-        WriteError: for a gap between motions, and for an offset that cannot be said.
+        WriteError: for a gap between motions, and for an offset that cannot be written.
     """
     state, old = event.state, control.length
     new = LengthOffset(state.length_number, state.length_offset_mm, state.tool_offset_xy_mm)

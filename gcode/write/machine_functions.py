@@ -1,4 +1,4 @@
-"""Blocks that move nothing: tool, spindle, coolant, dwell, stop."""
+"""Blocks without motion: tool, spindle, coolant, dwell, stop."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SECONDS_DECIMALS = 4
 
 
 def tool_change(control: ControlMemory, event: ToolChange) -> Iterator[str]:
-    """M6, behind which the spindle stands and the machine is somewhere else."""
+    """M6; after it the spindle is stopped and the position is unknown."""
     rule = control.options.dialect.codes.get("M6")
     if rule is None or rule.status is not Status.EXECUTED:
         if event.tool == control.tool:
@@ -59,7 +59,7 @@ def coolant(control: ControlMemory, event: CoolantChange) -> Iterator[str]:
 
 
 def ready(control: ControlMemory, event: Event, state: MotionState) -> Iterator[str]:
-    """Tool and spindle as a motion's state has them, where no event has said so."""
+    """Tool and spindle as a motion's state has them, where no event has set them."""
     if state.tool != control.tool:
         yield from tool_change(control, ToolChange(place=event.place, tool=state.tool))
     yield from spindle(control, event, state.spindle_rpm, state.spindle_direction)

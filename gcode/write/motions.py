@@ -23,29 +23,29 @@ def motion(control: ControlMemory, event: Motion, stream: EventStream) -> Iterat
     """Blocks of one motion, or of a tap, which is several.
 
     Raises:
-        WriteError: for one that cannot be said, or that does not begin where the last one ended.
+        WriteError: for one that cannot be written, or that does not begin where the last one ended.
     """
     _check(control, event)
     own: list[str] = []
-    beside: list[str] = []
+    in_block: list[str] = []
     if event.state is control.state:
         check_gap(control, event)
     else:
         yield from ready(control, event, event.state)
-        own, beside = set_length(control, event)
+        own, in_block = set_length(control, event)
         control.state = event.state
     if control.at is None:
         control.at = control.grid.point(event.start_mm)
     if isinstance(event, LinearMotion) and event.tapping:
         control.state = None  # the cycle turns the spindle both ways
-        yield from (control.line(*words) for words in (own, beside) if words)
+        yield from (control.line(*words) for words in (own, in_block) if words)
         yield from tap_blocks(control, event, tap_of(control, event, stream), feed_word(control, event))
         return
     if own:
         yield control.line(*own)
     for stroke in _strokes(control, event):
-        yield control.line(*beside, *_words(control, event, stroke))
-        control.at, control.unsure, beside = stroke.end, False, []
+        yield control.line(*in_block, *_words(control, event, stroke))
+        control.at, control.unsure, in_block = stroke.end, False, []
     control.at_mm = event.end_mm
 
 

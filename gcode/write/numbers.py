@@ -1,4 +1,4 @@
-"""Numbers as a program can say them: whole counts of the last decimal, so that sums of words never drift."""
+"""Numbers as a program writes them: whole counts of the last decimal, so that sums of words never drift."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Counts: TypeAlias = tuple[int, int, int]
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """The points that words with so many decimals can name.
+    """The points that words with `decimals` decimals can name.
 
     Attributes:
         unit_mm: length of the program's unit.
@@ -60,5 +60,5 @@ def fixed(count: int, decimals: int) -> str:
 
 @lru_cache(maxsize=64)  # feeds and speeds are the same on most lines
 def plain(value: float, decimals: int) -> str:
-    """A number with so many decimals at most, without a point where it is whole: ``1200``, ``0.25``."""
+    """A number with at most `decimals` decimals, without a point where it is whole: ``1200``, ``0.25``."""
     return fixed(round(value * 10.0**decimals), decimals).rstrip(".")

@@ -1,4 +1,4 @@
-"""What is to be decided about a program before it is written."""
+"""Options of a written program."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from gcode.settings import ALL_OFFSETS, MachineSettings, ToolOffset
 from gcode.write.numbers import MM_PER_INCH, Grid
 from gcode.write.output_rules import RULES, OutputRules
 
-#: More decimals than these are finer than what two places are told apart by.
+#: Most decimals; more are finer than the distance at which two positions are one.
 MOST_DECIMALS = 6
 
 
@@ -22,9 +22,9 @@ MOST_DECIMALS = 6
 class WriteOptions:
     """How a program is written.
 
-    Coordinates: events tell controlled points in machine coordinates; a program says them less ``shift_mm``. So the
-    default makes program coordinates of machine coordinates, and the control needs its work offset at zero; with the
-    place of the work zero as ``shift_mm`` the coordinates are those of the workpiece.
+    Coordinates: events have controlled points in machine coordinates; a program has these less ``shift_mm``. With the
+    default, program coordinates are machine coordinates, and the control needs its work offset at zero; with the
+    position of the work zero as ``shift_mm`` the coordinates are those of the workpiece.
 
     Attributes:
         dialect: the control.
@@ -33,12 +33,12 @@ class WriteOptions:
             of its length offset, is in G90 all the same, because only that is safe).
         arcs: ``centre`` (I, J, K), or ``radius``: R where the control finds the same centre from it, which it does not
             near half a turn, for tiny arcs and for full circles; these keep I, J, K.
-        decimals: digits after the point of coordinates, 0 to 6; None for what is usual: 3 in mm and 4 in inch for
+        decimals: digits after the point of coordinates, 0 to 6; None for the usual number: 3 in mm and 4 in inch for
             FANUC and Haas, one more for LinuxCNC and GRBL.
-        modal: whether words that the control already holds are left out.
+        modal: whether words that the control already holds are omitted.
         number_step: step of the block numbers, None for none.
         program_number: number of the O word, None for none; only FANUC and Haas have one.
-        percent: whether the program stands between percent signs; None for what is usual.
+        percent: whether the program is enclosed in percent signs; None for the usual choice.
         header: comments at the program's beginning, a line each; printable ASCII without parentheses.
         safe_start: whether a block at the beginning sets known modes (G17 G40 G49 G80 G90 G94).
         wcs: work offset to call at the beginning, e.g. ``G54`` or ``G54.1 P3``, None for none.
@@ -108,7 +108,7 @@ class WriteOptions:
 
     @property
     def rules(self) -> OutputRules:
-        """What the dialect decides."""
+        """The output rules of the dialect."""
         return RULES[self.dialect.name]
 
     @property

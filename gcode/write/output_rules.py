@@ -1,6 +1,6 @@
-"""What differs between the controls in what is written for them, as a table.
+"""Differences between controls in the programs written for them, as a table.
 
-What the interpreter's own tables already say (which codes and words a control has) is asked there.
+Codes and words of a control are in the interpreter's own tables (`gcode.dialects`).
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ class OutputRules:
     Attributes:
         safe_start: words of the block that sets known modes at the program's start.
         decimals: digits after the point by unit.
-        percent: whether a program stands between percent signs; None where the control knows none.
+        percent: whether a program is enclosed in percent signs; None where the control has none.
         program_digits: digits of the O number, 0 where a program has none.
-        most_block_number: largest N; behind it they begin anew.
+        most_block_number: largest N; after it numbers start again.
         speed_decimals: digits after the point of S.
         tap: ``cycle`` for G84 and G74, ``stroke`` for G33.1, ``none``.
     """

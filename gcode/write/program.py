@@ -1,4 +1,4 @@
-"""Whole programs from streams of events."""
+"""Programs from events."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ from gcode.write.options import WriteOptions
 
 
 def program_lines(events: Iterable[Event], options: WriteOptions | None = None) -> Iterator[str]:
-    """The lines of a program that makes these events happen.
+    """The lines of a program with these events.
 
     The program's motions are the events' motions with each point rounded to the decimals that are written, so no
-    error adds up, incremental programs included. An arc that rounding would make another arc, or that the control
+    error adds up, incremental programs included. An arc that rounding would change, or that the control
     would refuse, becomes chords within one count of the last decimal. An arc that is the first motion, or the first
     after a change of tool or length offset, is led in by a straight feed to its start. Every feed is one per minute
     (G94). Cutter compensation, work offsets, subprograms and cycles are already in the motions and are not written
     again, but for taps. Tool, spindle and length offset are taken from the events that change them and, where there
-    are none, from the motions' states. `Block` and `Notice` say nothing.
+    are none, from the motions' states. `Block` and `Notice` are not written.
 
     Args:
-        events: what `interpret` yields, or motions that one has made; each begins where the last one ends.
+        events: from `interpret`, or own motions; each begins at the end of the one before.
         options: default `WriteOptions()`.
 
     Yields:
         Lines without their ends.
 
     Raises:
-        WriteError: at the first event that cannot be said; the lines before it have been yielded.
+        WriteError: at the first event that cannot be written; the lines before it have been yielded.
     """
     options = options or WriteOptions()
     control = ControlMemory(options, options.grid, options.tool)
@@ -55,7 +55,12 @@ def program_lines(events: Iterable[Event], options: WriteOptions | None = None) 
 
 
 def write_program(path: Path | str, events: Iterable[Event], options: WriteOptions | None = None) -> int:
-    """Writes a program file, whole or not at all: what is there already stays until the new one is complete.
+    """Writes a program file, whole or not at all: an existing file stays until the new one is complete.
+
+    Args:
+        path: file to write.
+        events: as for `program_lines`.
+        options: default `WriteOptions()`.
 
     Returns:
         Number of lines.
@@ -102,7 +107,7 @@ def _ending(control: ControlMemory) -> Iterator[str]:
 
 def _blocks(control: ControlMemory, event: Event, stream: EventStream) -> Iterator[str]:
     if control.ended and not isinstance(event, Block | Notice):
-        raise control.error(event, "after-end", "an event behind the program's end", "the end as the last event")
+        raise control.error(event, "after-end", "an event after the end of the program", "the end as the last event")
     if isinstance(event, LinearMotion | ArcMotion):
         return motion(control, event, stream)
     if not isinstance(event, Block | Notice):

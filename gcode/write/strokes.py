@@ -1,4 +1,4 @@
-"""Motions as strokes that words with so many decimals can say: lines and circles between points of the grid."""
+"""Motions as lines and circles between points of the grid that words with a number of decimals can name."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from gcode.phases.arcs import arc_lengths
 from gcode.report.path_geometry import points_mm
 from gcode.write.numbers import Counts, Grid
 
-#: A circle whose radius is less, in counts, is no circle any more once its centre and ends are rounded.
+#: A circle whose radius is less, in counts, is not a circle any more once its centre and ends are rounded.
 LEAST_RADIUS = 4
-#: How far an arc may be led astray by rounding, in counts: half a count an axis at both ends and at the centre.
-MOST_ASTRAY = 4.0
-#: How far from the centre, in counts, a control may find the one that it works out from R.
-MOST_CENTRE_ASTRAY = 1.5
+#: Largest deviation of an arc by rounding, in counts: half a count per axis at both ends and at the centre.
+MOST_DEVIATION = 4.0
+#: Largest distance, in counts, of the centre that a control computes from R.
+MOST_CENTRE_DEVIATION = 1.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Circle:
         plane: 17, 18 or 19.
         turns: as those of `ArcMotion`.
         centre: counts from its start to its centre along the plane's first and second axis.
-        radius: radius in counts, negative for more than half a turn, where it says as much as the centre; else None.
+        radius: radius in counts, negative for more than half a turn, where it defines the same centre; else None.
         climb: length of the stroke over that of its arc in the plane: 1 for a circle, more for a helix.
     """
 
@@ -55,8 +55,8 @@ Stroke: TypeAlias = Line | Circle
 def arc_strokes(arc: ArcMotion, start: Counts, grid: Grid, dialect: Dialect) -> Iterator[Stroke]:
     """An arc as strokes from a point of the grid.
 
-    Several turns are one stroke where the control counts turns (P in G2), else one stroke each. What is no circle any
-    more once rounded, or one that the control refuses because its radii differ, becomes chords within one count of it.
+    Several turns are one stroke where the control counts turns (P in G2), else one stroke each. An arc that is not
+    a circle any more once rounded, or that the control refuses for its radii, becomes chords within one count of it.
 
     Args:
         arc: the arc; it starts at the point of the grid nearest to `start`.
@@ -92,7 +92,7 @@ def _chords(arc: ArcMotion, start: Counts, grid: Grid) -> list[Line]:
 
 
 def _circle(arc: ArcMotion, start: Counts, grid: Grid, dialect: Dialect) -> Circle | None:
-    """The rounded arc, None where that is not the same arc any more, or none that the control takes."""
+    """The rounded arc, None where it is not the same arc any more, or the control refuses it."""
     i, j, _ = PLANE_AXES[arc.plane]
     end, centre = grid.point(arc.end_mm), grid.point(arc.centre_mm)
     radii = [math.hypot(point[i] - centre[i], point[j] - centre[j]) for point in (start, end)]
@@ -101,7 +101,7 @@ def _circle(arc: ArcMotion, start: Counts, grid: Grid, dialect: Dialect) -> Circ
     if not dialect.arc_tolerance.in_unit(grid.unit_mm).accepts(radii[0] * grid.step_mm, radii[1] * grid.step_mm):
         return None
     rounded = replace(arc, start_mm=_floats(start), end_mm=_floats(end), centre_mm=_floats(centre))
-    if abs(rounded.sweep_rad - arc.sweep_rad) * max(radii) > MOST_ASTRAY:
+    if abs(rounded.sweep_rad - arc.sweep_rad) * max(radii) > MOST_DEVIATION:
         return None
     in_plane, path = arc_lengths(rounded)
     return Circle(
@@ -115,7 +115,7 @@ def _circle(arc: ArcMotion, start: Counts, grid: Grid, dialect: Dialect) -> Circ
 
 
 def _radius(arc: ArcMotion, mean: float) -> int | None:
-    """R of an arc of the grid, None where the control would work out another centre from it."""
+    """R of an arc of the grid, None where the control would compute another centre from it."""
     i, j, _ = PLANE_AXES[arc.plane]
     chord = (arc.end_mm[i] - arc.start_mm[i], arc.end_mm[j] - arc.start_mm[j])
     length, sweep, radius = math.hypot(*chord), arc.sweep_rad, round(mean)
@@ -125,7 +125,7 @@ def _radius(arc: ArcMotion, mean: float) -> int | None:
     side = math.copysign(1.0, sweep) if abs(sweep) <= math.pi else -math.copysign(1.0, sweep)
     across = arc.start_mm[i] + chord[0] / 2.0 - side * height * chord[1] / length
     along = arc.start_mm[j] + chord[1] / 2.0 + side * height * chord[0] / length
-    if math.hypot(across - arc.centre_mm[i], along - arc.centre_mm[j]) > MOST_CENTRE_ASTRAY:
+    if math.hypot(across - arc.centre_mm[i], along - arc.centre_mm[j]) > MOST_CENTRE_DEVIATION:
         return None
     return radius if abs(sweep) <= math.pi else -radius
 

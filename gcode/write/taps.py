@@ -1,4 +1,4 @@
-"""Taps: a stroke into a thread and one out of it are one block, because the spindle turns round between them."""
+"""Taps: a stroke into a thread and one out of it are one block, because the spindle reverses between them."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _PITCH_DECIMALS = 7
 
 @dataclass(frozen=True, slots=True)
 class Tap:
-    """What stands behind the stroke into a thread.
+    """The events after the stroke into a thread.
 
     Attributes:
         out: the stroke out of it.
         seconds: dwell at the bottom.
-        rigid: the spindle stands still afterwards.
+        rigid: the spindle is stopped afterwards.
     """
 
     out: LinearMotion
@@ -45,10 +45,10 @@ def tap_of(control: ControlMemory, event: LinearMotion, stream: EventStream) -> 
             case Dwell():
                 seconds += item[1].seconds
             case LinearMotion(tapping=True) as out if _is_back(control, event, out):
-                return Tap(out, seconds, _stands(stream, seconds))
+                return Tap(out, seconds, _stops(stream, seconds))
             case _:
                 break
-    raise _error(control, event, "a stroke into a thread", "the stroke out of it, back to its start, behind it")
+    raise _error(control, event, "a stroke into a thread", "the stroke out of it, back to its start, next")
 
 
 def _is_back(control: ControlMemory, into: LinearMotion, out: LinearMotion) -> bool:
@@ -56,8 +56,8 @@ def _is_back(control: ControlMemory, into: LinearMotion, out: LinearMotion) -> b
     return place(out.start_mm) == place(into.end_mm) and place(out.end_mm) == place(into.start_mm)
 
 
-def _stands(stream: EventStream, seconds: float) -> bool:
-    """True where the spindle stops behind a tap; the second dwell of the cycle is taken from the stream."""
+def _stops(stream: EventStream, seconds: float) -> bool:
+    """True where the spindle stops after a tap; the second dwell of the cycle is taken from the stream."""
     taken: list[tuple[int, Event]] = []
     while (item := stream.take()) is not None and isinstance(item[1], Block | Notice | Dwell):
         if isinstance(item[1], Dwell) and (not seconds or item[1].seconds != seconds):
@@ -78,7 +78,7 @@ def tap_blocks(control: ControlMemory, event: LinearMotion, tap: Tap, feed: str)
     """
     kind = control.options.rules.tap
     if kind == "none" or not control.direction:
-        problem = "tapping" if control.direction else "tapping while the spindle stands"
+        problem = "tapping" if control.direction else "tapping while the spindle is stopped"
         raise _error(control, event, problem, "a control that taps" if control.direction else "M3 or M4 before it")
     yield from _CONTROLS[kind](control, event, tap, feed)
     control.words.pop("motion", None)

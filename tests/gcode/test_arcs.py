@@ -113,7 +113,7 @@ def test_the_programmed_centre_is_kept_within_the_tolerance(motions) -> None:
     ("text", "message"),
     [
         ("G2 X1", "t.nc:2:1: G2 without a centre; expected I, J, K or R [arc-without-centre]"),
-        ("G2 X1 R5 I1", "t.nc:2:7: R5 beside I1; expected a radius R, or a centre by I, J, K [arc-two-centres]"),
+        ("G2 X1 R5 I1", "t.nc:2:7: R5 together with I1; expected a radius R, or a centre by I, J, K [arc-two-centres]"),
         ("G2 X1 I.5 K0", "t.nc:2:11: K0 in an arc of the XY plane (G17); expected I and J [arc-plane]"),
         ("G18 G2 X1 I.5 J0", "t.nc:2:15: J0 in an arc of the ZX plane (G18); expected K and I [arc-plane]"),
         ("G19 G2 Y1 I.5 J0", "t.nc:2:11: I.5 in an arc of the YZ plane (G19); expected J and K [arc-plane]"),

@@ -90,15 +90,15 @@ def test_two_codes_of_a_group_are_refused(dialect: Dialect) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("G777", "t.nc:1:1: G777 is no code of the fanuc dialect [unknown-code]"),
-        ("G0 M123", "t.nc:1:4: M123 is no code of the fanuc dialect [unknown-code]"),
-        ("G1.5", "t.nc:1:1: G1.5 is no code of the fanuc dialect [unknown-code]"),
-        ("G-1", "t.nc:1:1: G-1 is no code of the fanuc dialect [unknown-code]"),
+        ("G777", "t.nc:1:1: G777 is not a code of the fanuc dialect [unknown-code]"),
+        ("G0 M123", "t.nc:1:4: M123 is not a code of the fanuc dialect [unknown-code]"),
+        ("G1.5", "t.nc:1:1: G1.5 is not a code of the fanuc dialect [unknown-code]"),
+        ("G-1", "t.nc:1:1: G-1 is not a code of the fanuc dialect [unknown-code]"),
         ("G31 Z-5 F5", "t.nc:1:1: G31 (skip function: where it ends depends on a measurement) is not supported "
          "[unsupported-code]"),
         ("G1 X1 X2", "t.nc:1:7: X is given twice: X1 and X2; expected one X in a block [repeated-word]"),
-        ("M98 P10 L3", "t.nc:1:1: program O10 is not found; expected O10 in this file, or a file O0010 beside it or "
-         "on the search path [unknown-program]"),
+        ("M98 P10 L3", "t.nc:1:1: program O10 is not found; expected O10 in this file, or a file O0010 in the same "
+         "folder or on the search path [unknown-program]"),
         ("G0 A90", "t.nc:1:4: A90: A is a rotary axis, which is not supported [unsupported-word]"),
         ("G0 X1 U5", "t.nc:1:7: U5: U is a parallel axis, which is not supported [unsupported-word]"),
         ("G1 X1 ,C2 F1", "t.nc:1:1: a corner at the end of the program; expected a feed motion in the plane after it "
@@ -107,8 +107,8 @@ def test_two_codes_of_a_group_are_refused(dialect: Dialect) -> None:
         ("G0 X1 P5", "t.nc:1:7: P5 belongs to no code in this block or active [unused-word]"),
         ("G0 X1 I5", "t.nc:1:7: I5 belongs to no code in this block or active [unused-word]"),
         ("G4 X1 Y1", "t.nc:1:7: Y1 belongs to no code in this block or active [unused-word]"),
-        ("N1.5", "t.nc:1:1: N1.5 is no whole number of 0 or more; expected N0, 1, 2... [bad-value]"),
-        ("T-1", "t.nc:1:1: T-1 is no whole number of 0 or more; expected T0, 1, 2... [bad-value]"),
+        ("N1.5", "t.nc:1:1: N1.5 is not a whole number of 0 or more; expected N0, 1, 2... [bad-value]"),
+        ("T-1", "t.nc:1:1: T-1 is not a whole number of 0 or more; expected T0, 1, 2... [bad-value]"),
         ("F-1", "t.nc:1:1: F-1 is negative; expected F of 0 or more [bad-value]"),
         ("S-1", "t.nc:1:1: S-1 is negative; expected S of 0 or more [bad-value]"),
         ("O1\nO2", "t.nc:2:1: O2 begins another program before the end of O1; expected M2, M30 or % before it "

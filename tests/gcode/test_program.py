@@ -36,7 +36,7 @@ def test_a_tool_change_takes_the_selected_tool_and_stops_the_spindle(run) -> Non
 
 def test_a_tool_change_without_a_tool(refusal) -> None:
     assert str(refusal("G0 X1 M6")) == (
-        "t.nc:1:7: M6 with no tool selected; expected a T word before or beside it [missing-tool]"
+        "t.nc:1:7: M6 with no tool selected; expected a T word in this block or before it [missing-tool]"
     )
 
 

@@ -169,7 +169,7 @@ def test_tiny_arcs_stay_tiny(
 
 
 def test_an_arc_is_led_in_where_no_word_has_named_its_start() -> None:
-    """FANUC takes G43 beside G0 and G1 only, and the start of an arc decides its sweep."""
+    """FANUC takes G43 together with G0 and G1 only, and the start of an arc decides its sweep."""
     path = Path(random.Random(5), at=(0.0, 0.0, 90.0))
     path.state = replace(path.state, length_number=1, length_offset_mm=75.0)
     path.arc(radius=10.0, sweep=1.0, turns=1, rise=0.0)

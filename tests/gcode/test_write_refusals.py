@@ -55,7 +55,7 @@ END = ProgramStop(place=PLACE, optional=False, end=True)
             one(lambda m: on(m, extra=(90.0, 0.0, 0.0, 0.0, 0.0, 0.0))), {},
             "further axes at (90.0, 0.0, 0.0, 0.0, 0.0, 0.0); expected motions in x, y and z [further-axes]",
         ),
-        (one(lambda m: [END, m]), {}, "an event behind the program's end; expected the end as the last event"),
+        (one(lambda m: [END, m]), {}, "an event after the end of the program; expected the end as the last event"),
         (one(lambda m: Dwell(place=PLACE, state=m.state, seconds=-1.0)), {}, "a dwell of -1 s; expected a finite one"),
         (
             one(lambda m: SpindleChange(place=PLACE, spindle_rpm=math.inf, spindle_direction=1)), {},
@@ -75,7 +75,7 @@ END = ProgramStop(place=PLACE, optional=False, end=True)
         ),
         (
             one(lambda m: on(m, tapping=True)), {},
-            "a stroke into a thread; expected the stroke out of it, back to its start, behind it [tap]",
+            "a stroke into a thread; expected the stroke out of it, back to its start, next [tap]",
         ),
     ],
 )  # fmt: skip

@@ -42,7 +42,7 @@ def test_if_then_makes_one_macro_statement(value) -> None:
 
 
 def test_if_then_takes_no_motion(refusal) -> None:
-    """The same page: only a single macro statement is executed behind THEN."""
+    """The same page: only a single macro statement is executed after THEN."""
     assert refusal("#1=0\nIF[#1 EQ 0] THEN G0 X5.").code == "bad-statement"
 
 
