@@ -35,8 +35,6 @@ NOT_CLEAN: frozenset[str] = frozenset(
         "docs/paths.md",
         "docs/performance.md",
         "docs/references.md",
-        "examples/test_cuts/README.md",
-        "examples/test_cuts",
         "twin/cam",
         "twin/cli",
         "twin/comparison",

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from twin.measured.settings import CompareSettings, LogReading
     from twin.moldmaking import Mold, MoldJob, load_mold, mold
     from twin.planning.part_reach import PartReach, reach
-    from twin.planning.planned_path import PlannedPath, plan_paths
+    from twin.planning.planned_path import PlannedPath, plan_paths, write_paths
     from twin.planning.settings import PathSettings, ReachSettings
     from twin.record import (
         Attachment,
@@ -121,6 +121,7 @@ __all__ = [
     "verify",
     "write_coefficients",
     "write_mesh",
+    "write_paths",
     "write_report",
 ]
 
@@ -140,7 +141,7 @@ _HOMES = {
     "twin.measured.settings": ("CompareSettings", "LogReading"),
     "twin.moldmaking": ("Mold", "MoldJob", "load_mold", "mold"),
     "twin.planning.part_reach": ("PartReach", "reach"),
-    "twin.planning.planned_path": ("PlannedPath", "plan_paths"),
+    "twin.planning.planned_path": ("PlannedPath", "plan_paths", "write_paths"),
     "twin.planning.settings": ("PathSettings", "ReachSettings"),
     "twin.record": (
         *("Attachment", "Collision", "Engagement", "ForceSamples", "NcEvent", "Record", "RunHeader", "RunSummary"),

@@ -83,7 +83,7 @@ def forces_on_tool(
         x, y = tip[:, :1] + e.r * cos_t, tip[:, 1:2] + e.r * sin_t
         inside = (nf > 0.0) & (x > 0.0) & (x < x_max)
         part = share(y_max - y, np.gradient(y, axis=1)) * share(-tip[:, 2:] - e.z, e.sin_k * e.db)
-        # Kline and DeVor: the chip is the least of what each earlier pass of a tooth left
+        # Kline and DeVor: the chip is the smallest of those left by the earlier passes of each tooth
         farther = RUNOUT_MM * (np.cos(runout + behind) - np.cos(runout + behind - 2.0 * np.pi / TEETH))
         chip = np.minimum(per_tooth_mm * nf + farther * e.sin_k, TEETH * per_tooth_mm * nf)
         db = np.where(inside & (chip > 0.0), e.db * part, 0.0)
@@ -96,14 +96,14 @@ def forces_on_tool(
 
 
 def share(depth: np.ndarray, extent: np.ndarray) -> np.ndarray:
-    """Part of an element in the block: its middle lies so deep in it, and it is so long across the block's face."""
+    """Share of an element in the block, from the depth of its middle and its extent across the block's face."""
     return np.clip(0.5 + depth / np.maximum(np.abs(extent), 1e-9), 0.0, 1.0)
 
 
 def log(
     path: Path, rng: np.random.Generator, rate_hz: float, seconds: float, tool_force: np.ndarray, what: str
 ) -> None:
-    """Write what the dynamometer under the part would have said, its x axis along the machine's y, its y along -x."""
+    """Write the log of a dynamometer under the part, its x axis along the machine's y, its y axis along -x."""
     t = np.arange(len(tool_force)) / rate_hz
     on_workpiece = -tool_force
     force = np.column_stack((on_workpiece[:, 1], -on_workpiece[:, 0], on_workpiece[:, 2]))
@@ -111,7 +111,7 @@ def log(
     force += rng.normal(0.0, NOISE_N, force.shape)
     rows = "\n".join(f"{a:.6f},{x:.2f},{y:.2f},{z:.2f}" for a, (x, y, z) in zip(t, force, strict=True))
     path.write_text(
-        f"# SYNTHETIC DATA: computed by make_logs.py, measured by nobody. {what}, {seconds:.1f} s.\n"
+        f"# SYNTHETIC DATA: computed by make_logs.py, not measured. {what}, {seconds:.1f} s.\n"
         f"Time [s],Fx [N],Fy [N],Fz [N]\n{rows}\n"
     )
 

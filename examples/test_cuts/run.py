@@ -1,4 +1,4 @@
-"""The whole way with SYNTHETIC logs: test cuts, coefficients, a replay with them, and its comparison with a log.
+"""The complete workflow with SYNTHETIC logs: test cuts, coefficients, a replay with them, its comparison with a log.
 
 python examples/test_cuts/run.py        results go to examples/test_cuts/results
 """
@@ -15,15 +15,15 @@ RESULTS = HERE / "results"
 
 
 def twin(*arguments: object) -> str:
-    """Run a command of twin as a user would, and show it."""
+    """Show a command of twin and run it."""
     words = [str(a) for a in arguments]
     print("\n$ twin " + " ".join(words), flush=True)
-    command = [sys.executable, "-c", "from twin.cli import main; main()", *words]
+    command = [sys.executable, "-m", "twin", *words]
     return subprocess.run(command, check=True, text=True, stdout=subprocess.PIPE).stdout
 
 
 def write_job() -> Path:
-    """The validation job with the coefficients and the runout that were found."""
+    """The validation job with the identified coefficients and runout."""
     found = json.loads((RESULTS / "identified.json").read_text())["runout"]
     runout = f"runout_mm = {found['runout_mm']:.6f}\nrunout_angle_deg = {found['runout_angle_deg']:.2f}\n"
     head, output = (HERE / "validation.toml").read_text().split("[output]")

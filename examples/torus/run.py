@@ -11,22 +11,15 @@ NC program, job file, pictures and recordings go to the folder, ``examples/torus
 from __future__ import annotations
 
 import argparse
+import subprocess
 import sys
-import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import make_torus
 
-from gcode.report.plot import plot_path
-from twin.cam.path.to_nc import NcOptions, Operation, nc_events, write_nc
-from twin.cam.slices.sections import SlicedPart, slice_part
-from twin.cli.exit_codes import OUT_OF_TOLERANCE
-from twin.cli.run import run as twin
-from twin.planning.paths import PlanSetup, plan, prepare
-from twin.planning.replay_job import replay_tables, write_replay_job
-from twin.planning.settings import PathSettings
-from twin.settings.check import checked
+import twin
 
 HERE = Path(__file__).parent
 #: Table 4 of the paper, which does not state the number of teeth.
@@ -39,6 +32,8 @@ CUTTING = {
     "Kae": 3.32e-06,
     "source": "Kaneko et al., unified 2D polygon-based CAM framework, Table 4",
 }
+#: Exit code of ``twin verify``.
+OUT_OF_TOLERANCE = 4
 #: Reasons why the verification ends out of tolerance.
 FILLET_EXCESS = "a ball of 4 mm radius cannot reach into the inner fillet of 3 mm"
 COARSE_EXCESS = "with --coarse finishing rows are 2 mm apart and leave scallops above the permitted excess of 0.1 mm"
@@ -98,15 +93,14 @@ def main() -> int:
 
     job = program(fine, stl, out)
     heading("reach: material that a ball of R4, and one of R3, cannot machine")
-    pitch = ["--pitch", str(fine.pitch)]
-    twin(["reach", str(stl), "--tool", "ball 8", "--tool", "ball 6", *pitch])
+    command("reach", stl, "--tool", "ball 8", "--tool", "ball 6", "--pitch", fine.pitch)
     heading("replay: material removal" + ("" if arguments.coarse else " and forces"))
-    files = ["--mcap", str(out / "torus.mcap"), "--rrd", str(out / "torus.rrd"), "--force"]
-    if twin(["replay", str(job), *files, *(["--no-forces"] if arguments.coarse else [])]):
+    files = ["--mcap", out / "torus.mcap", "--rrd", out / "torus.rrd", "--force"]
+    if command("replay", job, *files, *(["--no-forces"] if arguments.coarse else [])):
         return 1
     heading("verify: the machined surface against the STL")
-    files = ["--plot", str(out / "verify.png"), "--rrd", str(out / "verify.rrd"), "--force"]
-    code = twin(["verify", str(job), str(stl), "--tolerance", "0.02", "--excess", "0.1", *files])
+    files = ["--plot", out / "verify.png", "--rrd", out / "verify.rrd", "--force"]
+    code = command("verify", job, stl, "--tolerance", 0.02, "--excess", 0.1, *files)
     if code == OUT_OF_TOLERANCE:
         print(f"\nOut of tolerance, as expected: {COARSE_EXCESS if arguments.coarse else FILLET_EXCESS}.")
         code = 0
@@ -115,12 +109,10 @@ def main() -> int:
 
 def program(fine: Fineness, stl: Path, out: Path) -> Path:
     """Roughing and finishing in one program; returns the job file that replays it."""
-    begin = time.perf_counter()
-    part = slice_part(stl, fine.pitch)
-    sliced = time.perf_counter()
-    rough, _ = operation(
+    heading("slice, rough, finish")
+    rough = scan(
+        stl,
         fine,
-        part,
         stepover_mm=fine.rough_step,
         allowance_mm=0.1,
         layers=fine.rough_layers,
@@ -128,25 +120,25 @@ def program(fine: Fineness, stl: Path, out: Path) -> Path:
         arcs_mm=0.02,
         gouge_mm=0.02,
     )
-    roughed = time.perf_counter()
-    finish, setup = operation(fine, part, stepover_mm=fine.finish_step, arcs_mm=fine.arcs, gouge_mm=fine.arcs)
-    finished = time.perf_counter()
-    heading("slice, rough, finish")
-    print(f"slicing {sliced - begin:.2f} s, roughing {roughed - sliced:.2f} s, finishing {finished - roughed:.2f} s")
-    operations, options = [rough, finish], NcOptions(header=("torus on a plate",))
-    lines = write_nc(out / "torus.nc", operations, options)
-    print(f"{lines} lines in {out / 'torus.nc'}")
-    tables = replay_tables(out / "torus.nc", operations, options, setup.stock_mm, fine.replay_pitch, out)
+    finish = scan(rough.setup.part, fine, stepover_mm=fine.finish_step, arcs_mm=fine.arcs, gouge_mm=fine.arcs)
+    print(f"slicing and roughing {rough.computed_s:.2f} s, finishing {finish.computed_s:.2f} s")
     # 100 minutes of cutting at 1 degree would fill 13 GB
-    tables["simulation"] |= {"step_mm": fine.replay_step, "angle_step_deg": 5.0}
-    write_replay_job(out / "job.toml", tables | {"cutting": CUTTING}, "Replays the torus example")
-    for name, one in (("rough", rough), ("finish", finish)):
-        plot_path(nc_events([one], options), out / f"{name}.png", title=one.path.name)
-    return out / "job.toml"
+    simulation = {"slice_pitch_mm": fine.replay_pitch, "step_mm": fine.replay_step, "angle_step_deg": 5.0}
+    file, job = out / "torus.nc", out / "job.toml"
+    tables = {"simulation": simulation, "cutting": CUTTING}
+    lines = twin.write_paths([rough, finish], file, job, header=["torus on a plate"], tables=tables, force=True)
+    print(f"{lines} lines in {file}")
+    rough.plot(out / "rough.png")
+    finish.plot(out / "finish.png")
+    return job
 
 
-def operation(fine: Fineness, part: SlicedPart, **values: object) -> tuple[Operation, PlanSetup]:
-    """One scanning path with the tool and cutting conditions of the paper."""
+def scan(part: Any, fine: Fineness, **values: Any) -> twin.PlannedPath:
+    """One scanning path with the tool and cutting conditions of the paper.
+
+    Args:
+        part: STL file, or the slices of an earlier path on the same part.
+    """
     common = {
         "strategy": "scan",
         "tool": "ball 8",
@@ -157,9 +149,12 @@ def operation(fine: Fineness, part: SlicedPart, **values: object) -> tuple[Opera
         "plunge_mm_min": 100.0,
         "spindle_rpm": 3600.0,
     }
-    settings = checked(PathSettings, {**common, **values}, "torus")
-    setup = prepare(settings, part)
-    return Operation(path=plan(settings, setup), spindle_rpm=settings.spindle_rpm), setup
+    return twin.plan_paths(part, **common, **values)
+
+
+def command(*words: object) -> int:
+    """Run a command of twin; returns its exit code."""
+    return subprocess.run([sys.executable, "-m", "twin", *map(str, words)], check=False).returncode
 
 
 def heading(text: str) -> None:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import ast
 import importlib
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
+import gcode
 import twin
 
 ROOT = Path(__file__).parents[2]
@@ -67,3 +70,46 @@ def test_every_public_function_and_class_explains_itself() -> None:
 def test_errors_have_one_root() -> None:
     errors = [getattr(twin, name) for name in twin.__all__ if name.endswith("Error")]
     assert all(issubclass(error, twin.TwinError) for error in errors)
+
+
+def shown_code() -> list[tuple[str, str]]:
+    """Python that users are shown: blocks of pages, and the examples."""
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md")), *sorted((ROOT / "examples").glob("**/*.md"))]
+    blocks = [
+        (f"{page.relative_to(ROOT)}:{text.count(chr(10), 0, block.start()) + 1}", block[1])
+        for page in pages
+        for text in [page.read_text()]
+        for block in re.finditer(r"^```(?:python|py)\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
+    ]
+    examples = sorted((ROOT / "examples").glob("**/*.py"))
+    return blocks + [(str(file.relative_to(ROOT)), file.read_text()) for file in examples]
+
+
+def private_names(code: str) -> set[str]:
+    """Names of twin and gcode that code uses and that are not public."""
+    doors: dict[str, ModuleType] = {"twin": twin, "gcode": gcode}
+    tree = ast.parse(code)
+    used = {n.name for node in ast.walk(tree) if isinstance(node, ast.Import) for n in node.names}
+    used |= {
+        f"{node.module}.{alias.name}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module
+        for alias in node.names
+    }
+    used |= {
+        f"{node.value.id}.{node.attr}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)
+    }
+    split = [name.split(".", 1) for name in used if name.split(".")[0] in doors]
+    return {".".join(parts) for parts in split if len(parts) > 1 and parts[1] not in doors[parts[0]].__all__}
+
+
+@pytest.mark.parametrize(("where", "code"), shown_code(), ids=[where for where, _ in shown_code()])
+def test_pages_and_examples_use_public_names_only(where: str, code: str) -> None:
+    assert private_names(code) == set()
+
+
+def test_a_private_name_is_found() -> None:
+    code = "import twin.job\nfrom twin import replay, jit\nfrom gcode.events import Event\ntwin.simulation\ntwin.replay"
+    assert private_names(code) == {"twin.job", "twin.jit", "gcode.events.Event", "twin.simulation"}

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
-from twin.cam.path.to_nc import NcOptions, Operation, describe, write_nc
+from gcode.report.plot import plot_path
+from twin.cam.path.to_nc import NcOptions, Operation, describe, nc_events, write_nc
 from twin.cam.path.toolpath import ToolPath
 from twin.cam.slices.sections import SlicedPart
 from twin.errors import ToolPathError
@@ -88,20 +91,11 @@ class PlannedPath:
         Raises:
             ToolPathError: the path is empty, a file exists already, or a file cannot be written.
         """
-        out = Path(out)
-        job = out.with_suffix(".toml") if job_file is None else Path(job_file)
-        if self.path.empty:
-            raise ToolPathError(
-                f"{out}: no file is written, as {describe(self.path.tool)} cannot cut anything of this stock: no "
-                "pocket is wide enough, or all of it lies above the stock or outside the region"
-            )
-        check_outputs({"program": out, "job": job}, force=force)
-        operations, options = [self.operation], self.nc_options
-        lines = write_nc(out, operations, options)
-        folder = job.absolute().parent
-        tables = replay_tables(out, operations, options, self.setup.stock_mm, self.settings.pitch_mm, folder)
-        write_replay_job(job, tables, f"Replays {out.name}: {self.path.name}")
-        return lines
+        return write_paths([self], out, job_file, force=force)
+
+    def plot(self, file: Path | str) -> None:
+        """Draw the path as .png, .svg or .pdf."""
+        plot_path(nc_events([self.operation], self.nc_options), Path(file), title=self.path.name)
 
 
 def plan_paths(
@@ -141,3 +135,52 @@ def plan_paths(
         pitch_bound_mm=pitch_bound_mm(settings, setup),
         computed_s=time.perf_counter() - begin,
     )
+
+
+def write_paths(
+    paths: Sequence[PlannedPath],
+    out: Path | str,
+    job_file: Path | str | None = None,
+    *,
+    header: Sequence[str] = (),
+    tables: Mapping[str, Mapping[str, Any]] = MappingProxyType({}),
+    force: bool = False,
+) -> int:
+    """Write the NC program of one or several paths, in order, and the job file that replays it.
+
+    Args:
+        paths: planned on the same part; control and stock are those of the last one.
+        out: the NC program.
+        job_file: the job file; the program's name with the suffix ``.toml`` if not given.
+        header: comments at the beginning of the program.
+        tables: further keys of the job file, or other values, by table, e.g. ``{"cutting": {...}}``.
+        force: replace files that exist.
+
+    Returns:
+        Number of lines of the program.
+
+    Raises:
+        ToolPathError: a path is empty, a file exists already, or a file cannot be written.
+
+    Example:
+        >>> rough = plan_paths("part.stl", strategy="scan", tool="ball 8", layers=5, allowance_mm=0.1)
+        >>> finish = plan_paths(rough.setup.part, strategy="scan", tool="ball 8", stepover_mm=0.25)
+        >>> write_paths([rough, finish], "part.nc", tables={"simulation": {"angle_step_deg": 5.0}})
+    """
+    out, last = Path(out), paths[-1]
+    job = out.with_suffix(".toml") if job_file is None else Path(job_file)
+    for made in paths:
+        if made.path.empty:
+            raise ToolPathError(
+                f"{out}: no file is written, as {describe(made.path.tool)} cannot cut anything of this stock: no "
+                "pocket is wide enough, or all of it lies above the stock or outside the region"
+            )
+    check_outputs({"program": out, "job": job}, force=force)
+    operations, options = [made.operation for made in paths], replace(last.nc_options, header=tuple(header))
+    lines = write_nc(out, operations, options)
+    folder = job.absolute().parent
+    keys = replay_tables(out, operations, options, last.setup.stock_mm, last.settings.pitch_mm, folder)
+    for name, table in tables.items():
+        keys[name] = {**keys.get(name, {}), **table}
+    write_replay_job(job, keys, f"Replays {out.name}: {', then '.join(made.path.name for made in paths)}")
+    return lines

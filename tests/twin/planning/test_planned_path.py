@@ -9,8 +9,9 @@ from support.small_parts import prism, write_stl
 
 from gcode.cli import run as gcode
 from twin.errors import SettingsError, ToolError, ToolPathError
+from twin.job import load_job
 from twin.planning.part_reach import reach
-from twin.planning.planned_path import PlannedPath, plan_paths
+from twin.planning.planned_path import PlannedPath, plan_paths, write_paths
 from twin.planning.settings import PathSettings, ReachSettings
 from twin.verification.settings import VerifySettings
 from twin.verification.verification import verify
@@ -41,6 +42,26 @@ def test_a_planned_path_is_written_and_verified(
     assert tight.settings.region_mm == (0.5, 0.5, 7.5, 5.5)
     assert capfd.readouterr() == ("", "")
     assert gcode(["check", str(tmp_path / "a.nc")]) == 0
+
+
+def test_several_paths_make_one_program_and_its_job(planned: PlannedPath, part: Path, tmp_path: Path) -> None:
+    rough = plan_paths(planned.setup.part, planned.settings, allowance_mm=0.2, tool_number=2)
+    tables = {"simulation": {"angle_step_deg": 5.0}, "output": {"mcap": "run.mcap"}}
+    lines = write_paths([rough, planned], tmp_path / "a.nc", header=["two paths"], tables=tables)
+    text = (tmp_path / "a.nc").read_text()
+    assert lines == len(text.splitlines())
+    assert text.count("M6") == 2 and text.index("T2 M6") < text.index("T1 M6")
+    assert "(two paths)" in text
+    job = load_job(tmp_path / "a.toml")
+    assert [tool.number for tool in job.tools] == [1, 2]
+    assert job.simulation.angle_step_deg == 5.0
+    assert job.simulation.slice_pitch_mm == planned.settings.pitch_mm
+    assert job.output.mcap == tmp_path / "run.mcap"
+
+
+def test_a_path_is_drawn(planned: PlannedPath, tmp_path: Path) -> None:
+    planned.plot(tmp_path / "path.png")
+    assert (tmp_path / "path.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_values_go_before_those_of_the_settings(planned: PlannedPath, part: Path) -> None:

@@ -68,10 +68,7 @@ def paths(
 
 def _draw(made: PlannedPath, plot: Path | None, rrd: Path | None, *, force: bool) -> None:
     if plot is not None:
-        from gcode.report.plot import plot_path
-        from twin.cam.path.to_nc import nc_events
-
-        plot_path(nc_events([made.operation], made.nc_options), plot, title=made.path.name)
+        made.plot(plot)
     if rrd is not None:
         from twin.cli.show.stills import paths_still
         from twin.sinks.rerun.still import write_still
