@@ -64,17 +64,17 @@ def test_each_stage_leaves_less_and_finishing_leaves_scallops_and_fillets(plan: 
     rest = rest_table(plan)
     volumes = [rest[s].volume_mm3 for s in STAGES]
     assert volumes == sorted(volumes, reverse=True)
-    # what the finishing tool can reach, and scallops and chords above it
+    # surface that the finishing tool can reach, with scallops and chords above it
     stock, tool = plan.finish.stock, plan.finish.path.tool
     points = stock.points_mm
     part = DropCutter(plan.surface, None).drop(points)
     reach = DropCutter(plan.surface, tool).drop(points)
-    # the lowest place of a tool's underside at each dexel over all places of the tool: closing on the dexel grid
+    # the lowest height of the tool's underside at each dexel over all tool positions: closing on the dexel grid
     closed = Dexels(stock.low_mm, stock.high_mm, 0.2, 5.0, -12.0)
     stays = np.column_stack((points, reach))
     closed.cut(tool, Strokes(stays, stays, np.empty((0, 8))))
     # measured across the surface: rows of 0.5 mm leave 0.048 mm where it leans by 55 degrees, at a radius of 2 mm;
-    # between a row and the foot of a wall beside it the distance may be twice as large
+    # between a row and the foot of a wall next to it the distance may be twice as large
     slope = np.hypot(*np.gradient(closed.heights_mm, 0.2))
     over = (stock.heights_mm - closed.heights_mm) / np.hypot(1.0, slope)
     assert np.percentile(over, 98.0) < 0.055

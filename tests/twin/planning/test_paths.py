@@ -1,4 +1,4 @@
-"""Paths planned from a part, and the same replayed: what is cut stays within closed forms."""
+"""Planned paths and their replay agree with closed forms."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_exact_rows_are_the_drop_cutters(tool: str) -> None:
         cutter = DropCutter(part.vertices_mm[part.triangles], parse_tool(tool), floor_mm=setup.floor_mm)
         lines = [m.chords_mm(1e-4) for m in path.of_kind(MoveKind.CUT)]
         for points in (np.concatenate(lines), np.concatenate([0.5 * (ln[1:] + ln[:-1]) for ln in lines])):
-            # chords 0.5 um, points left out 0.2 um, corners drawn on; beside walls as much to a side
+            # chords 0.5 um, omitted points 0.2 um, extended corners; next to walls as much sideways
             near = np.array([cutter.drop(points[:, :2] + (0.0, aside)) for aside in (-0.002, 0.0, 0.002)])
             assert (points[:, 2] - near.min(axis=0)).min() > -0.002
             assert (points[:, 2] - near.max(axis=0)).max() < 0.002
@@ -97,7 +97,7 @@ def test_exact_rows_leave_the_allowance() -> None:
 
 
 @pytest.mark.parametrize("exact", [False, True])
-def test_rows_beside_a_drafted_wall_are_as_good_as_their_bound(exact: bool) -> None:
+def test_rows_next_to_a_drafted_wall_keep_their_bound(exact: bool) -> None:
     part = prism(DRAFT, 0.0, 6.0)
     values: dict[str, Any] = {"strategy": "scan", "stepover_mm": 0.13, "direction": "y", "exact": exact}
     path, setup = made(part, **values)
@@ -212,7 +212,7 @@ def test_a_pocket_is_cleared_without_a_gouge(tmp_path: Path, tool: str, entry: s
     assert any(True for _ in path.of_kind(MoveKind(entry)))
     found = replayed(path, setup, part, tmp_path, 0.2, excess_mm=1.0)
     assert found.worst_gouge_mm < 0.003
-    # a flat tool leaves its radius's share in the four upright corners, a ball in those and along the floor
+    # a flat tool leaves material in the four vertical corners, a ball in those and along the floor
     corner = 2.0 * (math.sqrt(2.0) - 1.0)
     assert 0.5 * corner < found.worst_excess_mm < (corner if tool == "flat 4" else 2.0 * (math.sqrt(3.0) - 1.0)) + 0.05
     walls = [m.points_mm for m in path.of_kind(MoveKind.CUT) if m.points_mm[0, 2] == -2.0]

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from twin.cli.common import Force, Json, Quiet, Recording
+
 if TYPE_CHECKING:
     from twin.moldmaking.result import Mold
 
@@ -26,10 +28,10 @@ def mold(
     plot: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Draw paths and rest material of each stage here.")
     ] = None,
-    rrd: Annotated[Path | None, typer.Option(metavar="FILE", help="Write paths and part as a rerun recording.")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the tables as one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print neither progress nor tables.")] = False,
+    rrd: Recording = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Machine a mold from its STL file: roughing, semi-finishing of rest material, finishing; one program per stage.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from twin.cli.common import Force, Json, Part, Picture, Quiet, Recording, SettingsFile
 from twin.cli.options import options_from, settings_from_file
 from twin.planning.settings import PathSettings
 
@@ -21,23 +22,21 @@ def paths(
         Literal["contour", "scan"],
         typer.Argument(help="Levels of constant height, or parallel rows.", show_default=False),
     ],
-    part: Annotated[Path, typer.Argument(metavar="PART.stl", help="The part, a closed solid, mm.", show_default=False)],
+    part: Part,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="NC program to write.", show_default=False)],
     given: Mapping[str, Any],
-    settings: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="TOML file with any of the tool path's parameters.")
-    ] = None,
+    settings: SettingsFile = None,
     job_file: Annotated[
         Path | None,
         typer.Option(
             "--job-file", metavar="FILE", help="Job file that replays the program.", show_default="FILE of --out, .toml"
         ),
     ] = None,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the path as .png, .svg or .pdf.")] = None,
-    rrd: Annotated[Path | None, typer.Option(metavar="FILE", help="Write path and part as a rerun recording.")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print neither progress nor summary.")] = False,
+    plot: Picture = None,
+    rrd: Recording = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Make an NC program from a part's STL file, and a job file that replays it.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from twin.cli.common import Force, Json, Part, Picture, Quiet, Recording, SettingsFile
 from twin.cli.options import options_from, settings_from_file
 from twin.planning.settings import ReachSettings
 
@@ -17,24 +18,18 @@ if TYPE_CHECKING:
 
 @options_from(ReachSettings, "given", panel="Reach analysis")
 def reach(
-    part: Annotated[Path, typer.Argument(metavar="PART.stl", help="The part, a closed solid, mm.", show_default=False)],
+    part: Part,
     given: Mapping[str, Any],
-    settings: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="TOML file with any of the analysis' parameters.")
-    ] = None,
+    settings: SettingsFile = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", "--mesh", metavar="DIR", help="Write uncut material here, one STL file per tool."),
     ] = None,
-    plot: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw uncut material as .png, .svg or .pdf.")
-    ] = None,
-    rrd: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write part and uncut material as a rerun recording.")
-    ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print neither progress nor tables.")] = False,
+    plot: Picture = None,
+    rrd: Recording = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
     threads: Annotated[int | None, typer.Option(min=1, help="Number of threads.", show_default="all cores")] = None,
 ) -> None:
     """Find the material that tools cannot reach on a part: position, volume, thickness."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from twin.cli import exit_codes
+from twin.cli.common import Force, Json, Picture, Quiet, Recording, SettingsFile
 from twin.cli.options import options_from, settings_from_file
 from twin.verification.settings import VerifySettings
 
@@ -24,14 +25,12 @@ def verify(
         typer.Argument(metavar="PART.stl", help="The design, in the stock's coordinates, mm.", show_default=False),
     ],
     given: Mapping[str, Any],
-    settings: Annotated[Path | None, typer.Option(metavar="FILE", help="TOML file with any of the tolerances.")] = None,
-    plot: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw the deviations as .png, .svg or .pdf.")
-    ] = None,
-    rrd: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the deviations as a rerun recording.")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print neither progress nor tables.")] = False,
+    settings: SettingsFile = None,
+    plot: Picture = None,
+    rrd: Recording = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Replay a job without forces and compare the machined surface with the design: gouges, excess, positions.
 
