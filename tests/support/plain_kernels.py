@@ -1,0 +1,79 @@
+"""Pytest plugin for runs under ``NUMBA_DISABLE_JIT=1``: fails when a kernel was never called as plain Python.
+
+NUMBA_DISABLE_JIT=1 python -m pytest -p support.plain_kernels -m "not compiled" tests/twin/tools
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import twin.jit
+
+ROOT = Path(__file__).parents[2]
+KERNELS = sorted(p.relative_to(ROOT) for p in (ROOT / "twin").rglob("*kernels.py"))
+_OUTPUT = "kernels called"
+
+defined: set[str] = set()
+called: set[str] = set()
+
+
+def njit(function: Callable[..., Any]) -> Callable[..., Any]:
+    """In the place of `twin.jit.njit`: the function, which notes that it was called."""
+    name = f"{function.__module__}.{function.__qualname__}"
+    defined.add(name)
+
+    @functools.wraps(function)
+    def noting(*arguments: Any, **named: Any) -> Any:
+        called.add(name)
+        return function(*arguments, **named)
+
+    return noting
+
+
+twin.jit.njit = njit  # type: ignore[assignment]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Reports from worker processes arrive at the plugin of the process that started them."""
+    if config.pluginmanager.hasplugin("xdist"):
+        config.pluginmanager.register(Workers())
+
+
+class Workers:
+    """Collects what the workers noted."""
+
+    def pytest_testnodedown(self, node: Any) -> None:
+        """The names that a worker sent at its end."""
+        called.update(getattr(node, "workeroutput", {}).get(_OUTPUT, ()))
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Send the names from a worker; fail in the main process when some are missing."""
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput[_OUTPUT] = sorted(called)
+        return
+    for path in KERNELS:
+        importlib.import_module(".".join(path.with_suffix("").parts))
+    if never_called() and session.exitstatus == pytest.ExitCode.OK:
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """One line, and the kernels that are missing."""
+    missing = never_called()
+    count = f"{len(defined) - len(missing)} of {len(defined)} kernels in {len(KERNELS)} files ran as plain Python"
+    terminalreporter.section(count)
+    for name in missing:
+        terminalreporter.write_line(f"never called: {name}")
+
+
+def never_called() -> list[str]:
+    """Names of kernels that were not called."""
+    return sorted(defined - called)
