@@ -83,8 +83,7 @@ def main(arguments: Sequence[str]) -> int:
         pytest's exit code.
     """
     values = Values()
-    np.set_printoptions(threshold=sys.maxsize)
-    quiet = ["-vv", "--no-header", "-o", "enable_assertion_pass_hook=true", "-p", "no:cacheprovider"]
+    quiet = ["-q", "--no-header", "-o", "enable_assertion_pass_hook=true", "-p", "no:cacheprovider"]
     code = int(pytest.main([*quiet, *arguments], plugins=[values]))
     for (test, line), (_, value, limit, count, orig) in values.worst.items():
         print(f"{test}:{line}: {value:.4g} of {limit:.4g}, {count} times: {orig}")
