@@ -25,8 +25,6 @@ NOT_CLEAN: frozenset[str] = frozenset(
         "docs/compare.md",
         "docs/dexel.md",
         "docs/drop-cutter.md",
-        "docs",
-        "docs/gcode.md",
         "docs/identify.md",
         "docs/job-file.md",
         "docs/measured-logs.md",

@@ -49,7 +49,7 @@ EXAMPLES: tuple[tuple[str, str, str], ...] = (
     ("BCD", "to binary coded decimals", "BCD[10]"),
     ("EXISTS", "1 where a variable was set", "EXISTS[#<a>]"),
     ("MOD", "remainder", "[-7 MOD 3]"),
-    ("AND", "FANUC: of bits, LinuxCNC: of truth", "[6 AND 3]"),
+    ("AND", "FANUC: bitwise, LinuxCNC: logical", "[6 AND 3]"),
     ("OR", "the same", "[6 OR 3]"),
     ("XOR", "the same", "[6 XOR 3]"),
     ("EQ", "equal; LinuxCNC within 0.0001", "[1 EQ 1.00001]"),
@@ -83,7 +83,7 @@ class _Nothing:
 
 
 def functions() -> str:
-    """The functions and word operators, each with what it gives in each language."""
+    """The functions and word operators, each with its value in each language."""
     rows = (
         (code(name), meaning, code(example), *(_value(example, name, language) for language in LANGUAGES.values()))
         for name, meaning, example in EXAMPLES
@@ -104,13 +104,13 @@ def _value(example: str, name: str, language: MacroLanguage) -> str:
 
 
 def operators() -> str:
-    """Operators by how tightly they bind."""
+    """Operators by priority."""
     rows = []
     for name, language in LANGUAGES.items():
         ranks = sorted({rank for rank, _ in language.operators.values()}, reverse=True)
         tiers = (" ".join(o for o in language.operators if language.operators[o][0] == rank) for rank in ranks)
         rows.append((name, ", then ".join(code(tier) for tier in tiers)))
-    return table(("dialect", "tightest first"), rows)
+    return table(("dialect", "highest priority first"), rows)
 
 
 def named_parameters() -> str:
@@ -119,26 +119,26 @@ def named_parameters() -> str:
     rows = (
         ("position in program coordinates", _names(f"_{axis}" for axis in axes)),
         ("gauge point in machine coordinates", _names(f"_abs_{axis}" for axis in axes)),
-        ("of the control as it stands", _names(sorted([*NAMED, "_call_level", "_line"]))),
-        ("with one value", ", ".join(f"{code(f'#<{name}>')} {CONSTANTS[name]:g}" for name in sorted(CONSTANTS))),
+        ("state of the control", _names(sorted([*NAMED, "_call_level", "_line"]))),
+        ("constant", ", ".join(f"{code(f'#<{name}>')} {CONSTANTS[name]:g}" for name in sorted(CONSTANTS))),
     )
-    return table(("what", "names"), rows)
+    return table(("parameters", "names"), rows)
 
 
 def _names(names: Iterable[str]) -> str:
     return ", ".join(code(f"#<{name}>") for name in names)
 
 
-def field_table(kind: type, values: Mapping[str, Any], *, leave_out: Sequence[str] = ()) -> str:
+def field_table(kind: type, values: Mapping[str, Any], *, without: Sequence[str] = ()) -> str:
     """The fields of a dataclass with their docstrings, and the value in each of several of its objects.
 
     Args:
         kind: the dataclass.
         values: objects of it by name.
-        leave_out: fields that are shown elsewhere.
+        without: fields that are shown elsewhere.
     """
     texts = field_texts(kind)
-    names = [field.name for field in dataclasses.fields(kind) if field.name not in leave_out]
+    names = [field.name for field in dataclasses.fields(kind) if field.name not in without]
     rows = ((code(name), texts[name], *(shown(getattr(one, name)) for one in values.values())) for name in names)
     return table(("field", "meaning", *values), rows)
 
@@ -156,11 +156,11 @@ def settings_table() -> str:
 
 
 def _default(name: str, value: Any) -> str:
-    return "all at 0" if name == "offsets" else shown(value)
+    return "all 0" if name == "offsets" else shown(value)
 
 
 def shown(value: Any) -> str:
-    """A value in words."""
+    """A value as text."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if value is None or value in ("", ()) or (isinstance(value, Mapping | frozenset) and not value):
@@ -194,25 +194,25 @@ def _fields(value: Any) -> str:
 
 
 def limits() -> str:
-    """How large and deep things may be."""
+    """Largest sizes and depths."""
     given = Limits()
     rows = (
         ("blocks executed", f"{given.blocks:,}", "setting `limits.blocks`"),
-        ("jumps back, as loops make them", f"{given.jumps:,}", "setting `limits.jumps`"),
-        ("calls inside each other", str(given.nesting), "setting `limits.nesting`"),
-        ("mistakes that `check` collects", str(given.errors), "setting `limits.errors`"),
+        ("jumps back (loops)", f"{given.jumps:,}", "setting `limits.jumps`"),
+        ("nested calls", str(given.nesting), "setting `limits.nesting`"),
+        ("errors that `check` collects", str(given.errors), "setting `limits.errors`"),
         ("size of a program file", f"{program.MAX_BYTES // 2**20:,} MiB", ""),
         ("size of a table or settings file", f"{LARGEST_BYTES // 2**20} MiB", ""),
         ("length of a line", f"{block_parser.MAX_LINE:,} characters", ""),
         ("size of a number", f"{block_parser.MAX_VALUE:,.0f}", ""),
-        ("brackets inside each other", str(MAX_DEPTH), ""),
+        ("nested brackets", str(MAX_DEPTH), ""),
         ("steps of one block with a cycle", f"{MOST_STEPS:,}", ""),
         ("additional work offsets", str(ADDITIONAL_OFFSETS), "G54.1 P"),
         ("named parameters of a level", f"{variables._MOST_NAMES:,}", "LinuxCNC"),
         ("arguments of a subroutine", str(owords._ARGUMENTS), "LinuxCNC"),
         ("lines before the % of a leader", str(leader.LEADER_LINES), "FANUC, Haas"),
-        ("blocks without motion read over by compensation", str(BLOCKS_READ_OVER), "FANUC, Haas"),
+        ("blocks without motion that compensation skips", str(BLOCKS_READ_OVER), "FANUC, Haas"),
         ("straight motions for a spline", str(splines.CURVE_PIECES), "LinuxCNC"),
-        ("lines taken at once", f"{plain_runs.MAX_LINES:,}", "plain straight motions; nothing to be seen of it"),
+        ("lines taken at once", f"{plain_runs.MAX_LINES:,}", "plain straight motions; no visible effect"),
     )
-    return table(("what", "at most", ""), rows)
+    return table(("quantity", "at most", ""), rows)

@@ -1,4 +1,4 @@
-"""Tables in Markdown, and what the docstrings of the project's dataclasses say of their fields."""
+"""Tables in Markdown, and descriptions of fields from the docstrings of dataclasses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def code(text: str) -> str:
 
 
 def field_texts(kind: type) -> Mapping[str, str]:
-    """What the ``Attributes`` of a class's docstring say, by field.
+    """Descriptions of fields, from the ``Attributes`` of a class's docstring.
 
     Raises:
         ValueError: for a class without them.

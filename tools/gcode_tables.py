@@ -1,7 +1,7 @@
 """The tables of docs/gcode.md, made from the tables that the interpreter runs on.
 
 python tools/gcode_tables.py            # rewrites the parts of docs/gcode.md between the markers
-python tools/gcode_tables.py --check    # says whether the page is out of date: exit code 1
+python tools/gcode_tables.py --check    # reports whether the page is out of date: exit code 1
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from gcode.phases.g10 import _TAKES as DATA_WORDS
 PAGE = Path(__file__).parents[1] / "docs/gcode.md"
 _PART = re.compile(r"(<!-- generated: ([a-z-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _NAMES = tuple(DIALECTS)
-#: What a code's status is called on the page.
+#: Names of a code's status on the page.
 STATUS: Mapping[Status, str] = {
     Status.EXECUTED: "run",
     Status.NEUTRAL: "always",
@@ -38,7 +38,7 @@ STATUS: Mapping[Status, str] = {
 }
 NOT_THERE = "–"
 
-#: What a cycle does, step by step.
+#: Steps of a cycle.
 ACTS: Mapping[Act, str] = {
     Act.FEED_BOTTOM: "feed to Z",
     Act.FEED_R: "feed to R",
@@ -47,10 +47,10 @@ ACTS: Mapping[Act, str] = {
     Act.RAPID_R: "rapid to R",
     Act.RAPID_BOTTOM: "rapid to Z",
     Act.RAPID_CLEAR: "rapid to the return level",
-    Act.PECK: "pecks to Z, each out to R",
-    Act.CHIP_BREAK: "pecks to Z, each a little back",
-    Act.SHIFT: "off the axis",
-    Act.UNSHIFT: "back on the axis",
+    Act.PECK: "pecks to Z, each with a retraction to R",
+    Act.CHIP_BREAK: "pecks to Z, each with a short retraction",
+    Act.SHIFT: "shift off the axis",
+    Act.UNSHIFT: "shift back to the axis",
     Act.DWELL: "dwell",
     Act.STOP: "spindle stop",
     Act.RESTART: "spindle on again",
@@ -63,10 +63,10 @@ ACTS: Mapping[Act, str] = {
     Act.TAP_R: "tap out to R",
     Act.TAP_CLEAR: "tap out to the return level",
 }
-#: What G10 writes.
+#: Data that G10 writes.
 DATA: Mapping[str, str] = {
     "zero": "work offset P",
-    "zero-here": "work offset P so that the tool is where the words say",
+    "zero-here": "work offset P from the programmed position of the tool",
     "additional": "additional work offset P",
     "length": "length geometry of tool offset P",
     "length-wear": "length wear of tool offset P",
@@ -74,7 +74,7 @@ DATA: Mapping[str, str] = {
     "radius-wear": "radius wear of tool offset P",
     "ignored": "data up to G11, not executed: notices",
     "tool": "row of tool P",
-    "tool-here": "row of tool P so that the tool is where the words say",
+    "tool-here": "row of tool P from the programmed position of the tool",
     "tool-at-fixture": "the same, in G59.3 without G92",
 }
 
@@ -124,7 +124,7 @@ def _phases() -> str:
 
 
 def _order(dialect: Dialect) -> tuple[str, ...]:
-    """The steps of a dialect that something asks for."""
+    """The steps that a dialect uses."""
     used = {rule.phase for rule in dialect.codes.values()} | WORD_PHASES
     return tuple(phase for phase in dialect.order if phase in used)
 
@@ -145,7 +145,7 @@ def _cycles() -> str:
 
 
 def _cycle_rows(name: str, rules: Mapping[str, CycleRules]) -> list[tuple[str, ...]]:
-    """A row for each way in which the dialects run a cycle."""
+    """A row for each variant of a cycle among the dialects."""
     texts = {dialect: _cycle_row(one.cycles[name]) for dialect, one in rules.items() if name in one.cycles}
     return [(name, ", ".join(d for d in texts if texts[d] == text), *text) for text in dict.fromkeys(texts.values())]
 
@@ -158,7 +158,7 @@ def _cycle_row(cycle: Cycle) -> tuple[str, ...]:
 
 def _cycle_fields() -> str:
     return field_table(
-        CycleRules, _cycle_rules(), leave_out=("name", "cycles", "peck_tolerance_mm", "above_r_mm", "tap_order")
+        CycleRules, _cycle_rules(), without=("name", "cycles", "peck_tolerance_mm", "above_r_mm", "tap_order")
     )
 
 
@@ -189,7 +189,7 @@ def _variables(name: str) -> Callable[[], str]:
 
 def _dialect_fields() -> str:
     elsewhere = ("name", "codes", "order", "macro", "cycles", "data_kinds", "refused_letters", "free_letters")
-    return field_table(Dialect, DIALECTS, leave_out=elsewhere)
+    return field_table(Dialect, DIALECTS, without=elsewhere)
 
 
 def _meanings(meanings: Mapping[str, str]) -> Callable[[], str]:
@@ -224,7 +224,7 @@ SECTIONS: Mapping[str, Callable[[], str]] = {
 
 
 def updated(page: str) -> str:
-    """The page with its generated parts made anew.
+    """The page with its generated parts up to date.
 
     Raises:
         ValueError: where the markers are not those of `SECTIONS`, each once.

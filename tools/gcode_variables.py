@@ -13,13 +13,13 @@ from gcode.language.expressions import EvaluationError
 from gcode.language.program import program_of
 from gcode.settings import MachineSettings
 
-#: One more than the largest number that is asked for.
+#: One more than the largest number that is tried.
 NUMBERS_END = 30_000
 
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """What becomes of a variable that is read and one that is set, in words."""
+    """The effects of reading and of setting a variable, in words."""
 
     read: str
     write: str
@@ -30,12 +30,12 @@ NO_ACCESS = Access("refused", "refused")
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """Variables that mean the same.
+    """Variables of equal meaning.
 
     Attributes:
         text: their numbers as the page shows them.
         numbers: all of them.
-        meaning: what they hold.
+        meaning: their contents.
     """
 
     text: str
@@ -44,7 +44,7 @@ class Row:
 
 
 def _row(meaning: str, *spans: tuple[int, int], step: int = 0, count: int = 1) -> Row:
-    """A row of spans, both ends included; with a step they come again `count` times."""
+    """A row of spans, both ends included; with a step they repeat `count` times."""
     numbers = {n + k * step for first, last in spans for n in range(first, last + 1) for k in range(count)}
     shown = [f"#{first}" if first == last else f"#{first}–#{last}" for first, last in spans]
     if step:
@@ -65,9 +65,9 @@ FANUC_ROWS = (
     _row("stop with the comment as its message", (3006, 3006)),
     _row("active code of modal group 1 to 3, 5 to 11, 13, 14, 16, 17, 22", (4001, 4003), (4005, 4011), (4013, 4014)),
     _row("the same, further groups", (4016, 4017), (4022, 4022)),
-    _row("D, F and H that hold", (4107, 4107), (4109, 4109), (4111, 4111)),
+    _row("active D, F and H", (4107, 4107), (4109, 4109), (4111, 4111)),
     _row("number of the last N word, and of the program", (4114, 4115)),
-    _row("S and T that hold, number of the additional work offset", (4119, 4120), (4130, 4130)),
+    _row("active S and T, number of the additional work offset", (4119, 4120), (4130, 4130)),
     _row("end of the block before, program coordinates", (5001, 5003)),
     _row("position, machine coordinates", (5021, 5023)),
     _row("position with the active tool offset, program coordinates", (5041, 5043)),
@@ -91,7 +91,7 @@ _LINUXCNC_KNOWN = (
     _row("the same, A B C U V W", (5164, 5169)),
     _row("reference point of G30, X Y Z", (5181, 5183)),
     _row("the same, A B C U V W", (5184, 5189)),
-    _row("1 where G92 holds, and its nine offsets", (5210, 5219)),
+    _row("1 where G92 is active, and its nine offsets", (5210, 5219)),
     _row("active work offset, 1 for G54 to 9 for G59.3", (5220, 5220)),
     _row("work offsets G54 to G59.3: nine axes and the rotation, degrees", (5221, 5230), step=20, count=9),
     _row("number of the tool in the spindle", (5400, 5400)),
@@ -111,7 +111,7 @@ LINUXCNC_ROWS = (
 
 
 def access_of(dialect: Dialect, numbers: Iterable[int]) -> dict[int, Access]:
-    """What becomes of each variable."""
+    """The effects of reading and setting each variable."""
     session = Session(program_of("", "variables"), dialect, MachineSettings(), SystemVariables)
     start = session.state
     found: dict[int, Access] = {}

@@ -1,4 +1,4 @@
-"""Letters and steps of a block, in words: what the page says of them beside the interpreter's own tables."""
+"""Letters and steps of a block, in words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from gcode.control.command import _COMPANIONS as COMPANIONS
 from gcode.control.command import _CORNERED as CORNERED
 from gcode.dialects import Dialect
 
-#: Letters and what their words mean, in the order of the page.
+#: Letters and the meaning of their words, in the order of the page.
 LETTERS: tuple[tuple[str, str], ...] = (
     ("N", "number of a block, a label for jumps"),
     ("O", "number of a program; in LinuxCNC also a line of a subroutine, loop or branch"),
@@ -32,7 +32,7 @@ LETTERS: tuple[tuple[str, str], ...] = (
     ("L", "repeat; kind of data of G10"),
     ("F", "feed"),
     ("S", "spindle speed"),
-    ("T", "tool to be put in by M6"),
+    ("T", "tool for the next M6"),
     ("H", "number of the tool length offset"),
     ("D", "number of the cutter radius; largest speed with G96; diameter with G41.1"),
     ("E", "accuracy of G187, number of an analog output"),
@@ -43,7 +43,7 @@ LETTERS: tuple[tuple[str, str], ...] = (
     ("$", "number of the spindle"),
 )
 
-#: What is done in each step of a block (`Dialect.order`).
+#: Contents of each step of a block (`Dialect.order`).
 PHASES: Mapping[str, str] = {
     "feed_mode": "feed mode: G93 G94 G95",
     "modes": "modes: plane, units, G90 G91, motion code, return level",
@@ -72,12 +72,12 @@ PHASES: Mapping[str, str] = {
     "stop": "stops and ends: M0 M1 M2 M30 M60",
     "state": "M70 to M73",
 }
-#: Steps that words without a code ask for.
+#: Steps of words without a code.
 WORD_PHASES = frozenset({"feed", "speed", "tool", "motion"})
 
 
 def letter_status(letter: str) -> Callable[[Dialect], str]:
-    """What becomes of a letter's words, by dialect: ``any block``, ``run`` beside a code, ``refused`` or not there."""
+    """Status of a letter's words, by dialect: ``any block``, ``run`` (with a code), ``refused`` or none."""
 
     def status(dialect: Dialect) -> str:
         if letter in dialect.free_letters or letter in "GM":

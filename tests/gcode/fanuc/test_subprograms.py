@@ -69,7 +69,7 @@ def test_m99_p_in_the_main_program_is_a_jump(ends) -> None:
 
 
 def test_m99_in_the_main_program_ends_one_round(run) -> None:
-    """The same: control returns to the start of the main program, again and again; one round is run here."""
+    """The same: control returns to the start of the main program, again and again; one pass is run here."""
     events = run("O1\nG0 X1.\nM99\nX2.")
     assert [e.end_mm[0] for e in events if isinstance(e, LinearMotion)] == [1]
     assert [n.code for n in events if isinstance(n, Notice)] == ["round"]
