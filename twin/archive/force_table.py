@@ -61,8 +61,13 @@ def force_tables(records: Iterable[Record], on: ForceOn = "tool") -> Iterator[pa
 
 def joined_arrays(records: Iterable[Record]) -> dict[str, np.ndarray[Any, Any]]:
     """All force samples among records, as `force_arrays`, with little more memory than the arrays themselves."""
-    batches = [force_arrays(steps) for steps in _batches(records)]
+    batches = list(array_batches(records))
     return {name: np.concatenate([batch.pop(name) for batch in batches]) for name in COLUMNS}
+
+
+def array_batches(records: Iterable[Record]) -> Iterator[dict[str, np.ndarray[Any, Any]]]:
+    """Force samples among records as `force_arrays`, about `BATCH_ROWS` of them together; at least one batch."""
+    return (force_arrays(steps) for steps in _batches(records))
 
 
 def _batches(records: Iterable[Record]) -> Iterator[list[Step]]:

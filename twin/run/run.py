@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from twin.archive import RunInfo, read_forces, read_run, run_info
 from twin.archive.container.partial import copy_file
-from twin.archive.force_table import joined_arrays
+from twin.archive.force_table import array_batches, joined_arrays
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, WorkpiecePatch
 from twin.run.interrupted import summary_of
 from twin.run.patches import joined
@@ -186,4 +186,6 @@ class Run:
         """The run in a notebook: a line, a table by tool, a plot of the forces."""
         from twin.run.notebook import run_html
 
-        return run_html(self.header.program, self._extent(), self.summary, self.forces)
+        kept = self.__dict__.get("forces")
+        batches = array_batches(self.records()) if kept is None else [kept]
+        return run_html(self.header.program, self._extent(), self.summary, batches)

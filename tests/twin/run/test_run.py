@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import base64
 import gc
+import io
 import os
 import re
 import signal
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 from support.job_files import job_folder
 from support.slot_run import SlotRun
 
 import twin
 from twin.archive import export_forces
 from twin.cli import run as command
-from twin.run.notebook import envelope
+from twin.run.notebook import COLUMNS, envelope
 from twin.simulation.replay import Replay
 from twin.sinks.mcap_sink import McapSink
 
@@ -214,13 +217,43 @@ def test_a_notebook_shows_a_small_picture(replayed: twin.Run) -> None:
     assert len(html) < 100_000
 
 
+@pytest.mark.parametrize("parts", [1, 7])
 @pytest.mark.parametrize("count", [0, 1, 7, 800, 1_000_000])
-def test_an_envelope_has_every_peak_and_few_points(count: int) -> None:
-    values = np.random.default_rng(0).normal(size=count)
-    firsts, low, high = envelope(values)
-    assert len(firsts) == len(low) == len(high) == min(count, 800)
-    if count:
-        assert (low.min(), high.max()) == (values.min(), values.max())
-        parts = np.split(values, firsts[1:])
-        assert np.array_equal(low, [p.min() for p in parts])
-        assert np.array_equal(high, [p.max() for p in parts])
+def test_an_envelope_has_every_peak_and_few_points(count: int, parts: int) -> None:
+    random = np.random.default_rng(0)
+    t_s = np.sort(random.uniform(0.0, 10.0, count))
+    forces = {"t_s": t_s, **{name: random.normal(size=count) for name in ("fx_n", "fy_n", "fz_n")}}
+    ends = np.linspace(0, count, parts + 1).astype(int)
+    batches = [{name: values[a:b] for name, values in forces.items()} for a, b in pairwise(ends)]
+    low, high = envelope(batches, 10.0)
+    assert low.shape == high.shape == (COLUMNS, 3)
+    for axis, name in enumerate(("fx_n", "fy_n", "fz_n")):
+        if count:
+            assert np.nanmin(low[:, axis]) == forces[name].min()
+            assert np.nanmax(high[:, axis]) == forces[name].max()
+        for column in (0, 123, COLUMNS - 1):
+            inside = forces[name][(t_s * COLUMNS / 10.0).astype(int) == column]
+            want = (inside.min(), inside.max()) if len(inside) else (np.nan, np.nan)
+            assert np.array_equal((low[column, axis], high[column, axis]), want, equal_nan=True)
+
+
+def test_a_notebook_plot_does_not_keep_all_samples(replayed: twin.Run, tmp_path: Path) -> None:
+    opened = twin.open_run(replayed.save(tmp_path / "slot.mcap"))
+    fresh = opened._repr_html_()
+    assert "forces" not in vars(opened)
+    assert len(opened.forces["t_s"]) == opened.summary.samples
+    assert opened._repr_html_() == fresh
+
+
+def test_a_very_long_run_is_shown_without_a_plot(replayed: twin.Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("twin.run.notebook.MOST_SAMPLES", 10)
+    assert "no plot" in replayed._repr_html_()
+
+
+def test_progress_is_drawn_on_request(job: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    console = Console(file=io.StringIO(), force_terminal=True, width=120)
+    monkeypatch.setattr("twin.cli.show.progress.errors", lambda: console)
+    twin.replay(job)
+    assert isinstance(console.file, io.StringIO) and console.file.getvalue() == ""
+    twin.replay(job, progress=True)
+    assert "replaying" in console.file.getvalue()

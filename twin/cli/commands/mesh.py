@@ -36,12 +36,9 @@ def mesh(
 
 
 def _from_run(run: Path) -> SurfaceMesh:
-    from twin.archive import read_run
-    from twin.record import WorkpiecePatch
-    from twin.run.patches import joined
+    from twin.run.run import Run
 
-    last = {record.patch: record for record in read_run(run) if isinstance(record, WorkpiecePatch)}
-    return joined(last.values())
+    return Run(run).mesh()
 
 
 def _from_job(job_file: Path) -> SurfaceMesh:
