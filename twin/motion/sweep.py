@@ -1,4 +1,4 @@
-"""What a tool sweeps on a straight motion: its sections by planes, and whether points lie in it."""
+"""Volume swept by a tool on a straight motion: its sections by planes, and whether points lie in it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import Strips
-from twin.motion import kernels
+from twin.motion.section_kernels import Planes, section_nodes
+from twin.motion.swept_kernels import BodyShape, Motion, Sweeps, outside_sweeps
 from twin.tools.shape import ToolShape
 
 #: Order of the coordinates (normal, u, v) of each slice family.
@@ -24,11 +25,10 @@ class Body:
     """A convex body of revolution carried by the tool: the cutting part, the shank, a piece of the holder.
 
     Attributes:
-        parameters: shape (8,), the form that kernels take: `ToolShape.parameters` and how far the body's lowest point
-            lies below the tool tip.
+        shape: the form that kernels take.
     """
 
-    parameters: FloatArray
+    shape: BodyShape
 
     @classmethod
     def of(cls, shape: ToolShape, *, chord_mm: float = 0.0, above_tip_mm: float = 0.0) -> Body:
@@ -39,22 +39,22 @@ class Body:
         """
         enlarged = shape.circumscribed(chord_mm) if chord_mm > 0.0 else shape
         drop = chord_mm if shape.corner_mm > 0.0 else 0.0
-        return cls(np.append(enlarged.parameters, drop - above_tip_mm))
+        return cls(BodyShape(enlarged.meridian, float(drop - above_tip_mm)))
 
     @property
     def top_mm(self) -> float:
         """Height of the body's top above the tool tip."""
-        return float(self.parameters[5] - self.parameters[7])
+        return self.shape.meridian.height - self.shape.drop
 
     @property
     def bottom_mm(self) -> float:
         """Height of the body's lowest point above the tool tip, not below the tip."""
-        return max(0.0, -float(self.parameters[7]))
+        return max(0.0, -self.shape.drop)
 
     @property
     def radius_mm(self) -> float:
         """Largest radius."""
-        return float(self.parameters[6])
+        return self.shape.meridian.radius
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,7 +90,7 @@ class Sweep:
         return (
             earlier is not None
             and bool(np.array_equal(earlier.end_mm, self.start_mm))
-            and bool(np.array_equal(earlier.body.parameters, self.body.parameters))
+            and earlier.body.shape == self.body.shape
         )
 
     def strips(
@@ -110,8 +110,8 @@ class Sweep:
             axis: 0, 1 or 2, the normal of the planes.
             low_mm, pitch_mm, count: planes at low + (k + 1/2) pitch, k from 0 to count - 1.
             chord_mm: how far a chord may stand off the curve.
-            start_is_cut: the body's volume at the start has been cut already, so that only what the motion adds need
-                be right; the rest is marked as not fresh.
+            start_is_cut: the volume at the start has been cut already, so that only the part that the motion adds
+                need be right; the rest is marked as not fresh.
             top_mm: height above which there is no material.
         """
         low, high = self.bounds_mm
@@ -119,45 +119,44 @@ class Sweep:
         last = min(count - 1, math.floor((high[axis] - low_mm) / pitch_mm - 0.5))
         if last < first:
             return _EMPTY
-        order = list(_ORDER[axis])
-        start = self.start_mm[order]
-        move = (self.end_mm - self.start_mm)[order]
         planes = last - first + 1
-        offsets = np.zeros(planes + 1, dtype=np.int64)
+        cut = Planes(
+            horizontal=axis == 2,
+            first_w=float(low_mm + (first + 0.5) * pitch_mm),
+            pitch=float(pitch_mm),
+            planes=planes,
+            chord=float(chord_mm),
+            start_is_cut=start_is_cut,
+            top=float(top_mm),
+        )
+        motion, offsets = self._motion(axis), np.zeros(planes + 1, dtype=np.int64)
         room = 128 * planes + 2048
         while True:
-            nodes = np.empty((room, 3))
-            fresh = np.empty(room, dtype=np.bool_)
-            written = kernels.section_nodes(
-                self.body.parameters,
-                axis == 2,
-                start,
-                move,
-                low_mm + (first + 0.5) * pitch_mm,
-                pitch_mm,
-                planes,
-                chord_mm,
-                start_is_cut,
-                top_mm,
-                offsets,
-                nodes,
-                fresh,
-            )
+            strips = Strips(first, offsets, np.empty((room, 3)), np.empty(room, dtype=np.bool_))
+            written = section_nodes(self.body.shape, motion, cut, strips)
             if written >= 0:
-                return Strips(first, offsets, nodes[:written], fresh[:written])
+                return Strips(first, offsets, strips.nodes[:written], strips.fresh[:written])
             room *= 2
+
+    def _motion(self, axis: int) -> Motion:
+        """The tip's motion in the order (normal, u, v) of a slice family."""
+        move = self.end_mm - self.start_mm
+        w, u, v = ((float(self.start_mm[a]), float(move[a])) for a in _ORDER[axis])
+        return Motion(*w, *u, *v)
 
 
 class SweptVolume:
-    """The union of several sweeps, ready to be asked for many points."""
+    """The union of several sweeps, ready for tests of many points."""
 
     def __init__(self, sweeps: Sequence[Sweep]) -> None:
-        self._parameters = np.array([s.body.parameters for s in sweeps])
-        self._starts = np.array([s.start_mm for s in sweeps])
-        self._moves = np.array([s.end_mm - s.start_mm for s in sweeps])
+        self._sweeps = Sweeps(
+            bodies=np.array([(*s.body.shape.meridian, s.body.shape.drop) for s in sweeps]),
+            starts=np.array([s.start_mm for s in sweeps]),
+            moves=np.array([s.end_mm - s.start_mm for s in sweeps]),
+        )
 
     def __len__(self) -> int:
-        return len(self._starts)
+        return len(self._sweeps.starts)
 
     def clear(
         self,
@@ -169,11 +168,9 @@ class SweptVolume:
         """Clear the flags of the points that lie deeper than ``depth_mm`` inside one of the sweeps, in place.
 
         Args:
-            counts: shape (n,), how many of the sweeps, from the first, each point is asked against; None for all.
+            counts: shape (n,), how many of the sweeps, from the first, count for each point; None for all.
         """
-        if len(self._starts):
+        if len(self):
             if counts is None:
-                counts = np.full(len(points_mm), len(self._starts), dtype=np.int64)
-            kernels.outside_sweeps(
-                points_mm, in_material, counts, self._parameters, self._starts, self._moves, depth_mm
-            )
+                counts = np.full(len(points_mm), len(self), dtype=np.int64)
+            outside_sweeps(points_mm, in_material, counts, self._sweeps, depth_mm)

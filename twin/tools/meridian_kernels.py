@@ -109,3 +109,12 @@ def _offset_on_arc(tool: Meridian, slope: float, q: float, wall: float) -> float
             break
     rho = disc + corner * t / math.sqrt(1.0 + t * t)
     return math.sqrt(max(0.0, rho * rho - q * q))
+
+
+@njit
+def profile_radius(tool: Meridian, height: float) -> float:
+    """Radius at a height above the lowest point, in [0, tool height]."""
+    if height >= tool.arc_height:
+        return tool.arc_radius + (height - tool.arc_height) * tool.tangent
+    d = tool.corner - height
+    return tool.disc + math.sqrt(max(0.0, tool.corner * tool.corner - d * d))

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry.column_cells import kernels
 from twin.geometry.column_cells.cells import CELL_PITCHES, CellFamily
+from twin.geometry.column_cells.query_kernels import Planes
 from twin.geometry.column_cells.strips import Strips
 from twin.geometry.polygons import clip
 from twin.geometry.polygons.lines import LineEnds, ring_line_ends
@@ -120,7 +120,7 @@ class TriSlices(ABC):
 
 
 class CellSlices(TriSlices):
-    """The fast store: column cells, see `twin.geometry.column_cells.kernels`."""
+    """The fast store: column cells, see `twin.geometry.column_cells.store_kernels`."""
 
     def __init__(self, slices: SliceSet) -> None:
         super().__init__(slices)
@@ -168,23 +168,8 @@ class CellSlices(TriSlices):
             self._vote(points_mm, axis, enough - (3 - asked), enough - 1, votes)
 
     def _vote(self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]) -> None:
-        family = self._families[axis]
-        kernels.contains(
-            points_mm,
-            axis,
-            *PLANE_AXES[axis],
-            self.low_mm[axis],
-            self.pitch_mm[axis],
-            family.grid,
-            family.tiles,
-            family.table,
-            family.page,
-            family.cells,
-            family.pool,
-            votes,
-            least,
-            most,
-        )
+        planes = Planes(axis, *PLANE_AXES[axis], float(self.low_mm[axis]), float(self.pitch_mm[axis]))
+        self._families[axis].vote(points_mm, planes, votes, least, most)
 
 
 class PolygonSlices(TriSlices):

@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twin.arrays import FloatArray
-from twin.geometry.column_cells import kernels
 from twin.geometry.column_cells.cells import CellFamily
+from twin.geometry.column_cells.query_kernels import Planes
+from twin.geometry.column_cells.store_kernels import SIZE
 from twin.geometry.column_cells.strips import Strips
 from twin.geometry.polygons import clip
 from twin.geometry.polygons.region import Region
@@ -80,8 +81,7 @@ def test_thousands_of_cuts_agree_with_geos_and_pyclipper() -> None:
     assert family.region(0).area_mm2 == pytest.approx(truth.area, abs=1e-5)
     points = rng.uniform((-1.0, -1.0), (21.0, 14.0), (5000, 2))
     votes = np.zeros(len(points), dtype=np.int8)
-    cells = (family.grid, family.tiles, family.table, family.page, family.cells, family.pool)
-    kernels.contains(np.column_stack((points, np.zeros(5000))), 2, 0, 1, -0.5, 1.0, *cells, votes, 0, 0)
+    family.vote(np.column_stack((points, np.zeros(5000))), Planes(2, 0, 1, -0.5, 1.0), votes, 0, 0)
     assert np.array_equal(votes > 0, shapely.contains_xy(truth, points[:, 0], points[:, 1]))
     lines = np.sort(rng.uniform(-1.0, 21.0, 300))
     offsets, ends, _ = family.line_ends(np.array([0]), 0, lines, (-1.0, 20.0))
@@ -116,7 +116,7 @@ def test_cells_grow_without_bound() -> None:
         v = (i + 0.25) * 10.0 / count
         family.cut(strip(np.array([(1.0, v), (9.0, v), (9.0, v + 5.0 / count), (1.0, v + 5.0 / count)])))
     assert family.area_mm2[0] == pytest.approx(100.0 - 8.0 * 5.0, abs=1e-9)
-    assert family.cells[:, 2].max() >= 2 * count
+    assert family.store.cells[:, SIZE].max() >= 2 * count
 
 
 def test_measuring_changes_nothing() -> None:

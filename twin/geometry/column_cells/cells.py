@@ -1,24 +1,31 @@
-"""The fast slice store: every plane of the workpiece as column cells (see `twin.geometry.column_cells.kernels`)."""
+"""The fast slice store: the workpiece's planes as column cells (see `twin.geometry.column_cells.store_kernels`)."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry.column_cells import kernels
+from twin.geometry.column_cells import store_kernels as layout
+from twin.geometry.column_cells.cut_kernels import cut_planes
+from twin.geometry.column_cells.edge_kernels import EDGE_COLUMNS
+from twin.geometry.column_cells.fill_kernels import fill_plane
+from twin.geometry.column_cells.line_kernels import u_lines, v_lines
+from twin.geometry.column_cells.query_kernels import Planes, contains, plane_trapezoids
 from twin.geometry.column_cells.strips import Strips
-from twin.geometry.polygons import line_kernels, lines
+from twin.geometry.polygons import lines
 from twin.geometry.polygons.clip import union_convex
 from twin.geometry.polygons.region import Region
 
 #: Cells are squares of this many slice pitches.
 CELL_PITCHES = 5
 _FREE_LISTS = 40
+_T = TypeVar("_T", bound=np.generic)
 
 
 class CellFamily:
@@ -40,109 +47,79 @@ class CellFamily:
         high_uv_mm: tuple[float, float],
         cell_mm: float,
     ) -> None:
-        self.grid = np.array([low_uv_mm[0], low_uv_mm[1], cell_mm])
-        self.columns = max(1, math.ceil((high_uv_mm[0] - low_uv_mm[0]) / cell_mm * (1.0 - 1e-12)))
-        self.tiles = max(1, math.ceil((high_uv_mm[1] - low_uv_mm[1]) / cell_mm * (1.0 - 1e-12)))
+        columns, tiles = (
+            max(1, math.ceil((high - low) / cell_mm * (1.0 - 1e-12)))
+            for low, high in zip(low_uv_mm, high_uv_mm, strict=True)
+        )
+        self.grid = layout.Grid(float(low_uv_mm[0]), float(low_uv_mm[1]), float(cell_mm), columns, tiles)
         self.area_mm2 = np.array([r.area_mm2 for r in regions], dtype=np.float64)
-        self.table: NDArray[np.int64] = np.zeros((len(regions), self.columns), dtype=np.int64)
-        shape = (1, math.ceil(self.tiles / kernels.PAGE_TILES))
-        self.page: NDArray[np.int64] = np.zeros(shape, dtype=np.int64)
-        self._own_table: NDArray[np.bool_] = np.zeros(1, dtype=np.bool_)
-        self._own: NDArray[np.bool_] = np.zeros(shape, dtype=np.bool_)
+        self.store = _empty_store(len(regions), columns, math.ceil(tiles / layout.PAGE_TILES))
+        self._scratch = _scratch(1024)
         self._regions = regions
         self._alike = Counter(map(id, regions))
         self._templates: dict[int, NDArray[np.int64]] = {}
-        self._used: NDArray[np.int64] = np.array([0, 1])
-        self.cells: NDArray[np.int32] = np.zeros((0, 4), dtype=np.int32)
-        self.pool = np.empty((1024, 5))
-        self._free: NDArray[np.int64] = np.full(_FREE_LISTS + 1, -1, dtype=np.int64)
-        self._free[-1] = 0
-        self._make_scratch(1024)
-
-    def _make_scratch(self, rows: int) -> None:
-        self._segments = np.empty((rows, 8))
-        self._toggles = np.empty((2, 4 * rows))
-        self._out = np.empty((rows, 5))
-        self._work = np.empty((rows, 5))
 
     @property
     def bytes_in_use(self) -> int:
         """Memory that cells, their edges and the tables of pages take, without what is kept ready for more."""
-        cells, tables = self._used
-        per_table = self.page.shape[1] * (self.page.itemsize + self._own.itemsize)
-        edges, planes = self._free[-1], np.count_nonzero(self.table[:, 0])
+        store = self.store
+        cells, tables = store.used
+        per_table = store.page.shape[1] * (store.page.itemsize + store.own.itemsize)
+        edges, planes = store.free[-1], np.count_nonzero(store.table[:, 0])
         return int(
-            cells * self.cells[0].nbytes
-            + edges * self.pool[0].nbytes
+            cells * store.cells[0].nbytes
+            + edges * store.pool[0].nbytes
             + tables * per_table
-            + planes * self.table[0].nbytes
+            + planes * store.table[0].nbytes
         )
 
     def built(self, k: int) -> bool:
         """Whether a plane has cells."""
-        return bool(self.table[k, 0])
+        return bool(self.store.table[k, 0])
 
     def ensure(self, first: int, last: int) -> None:
         """Build the planes ``first`` to ``last - 1``, as far as they exist, that are not built yet."""
         first = max(0, first)
-        for k in np.flatnonzero(self.table[first:last, 0] == 0) if last > first else ():
+        for k in np.flatnonzero(self.store.table[first:last, 0] == 0) if last > first else ():
             self._build(first + int(k))
 
     def _build(self, k: int) -> None:
         region = id(self._regions[k])
         if self._alike[region] == 1:
-            self.table[k] = self._fill(k, alone=True)
+            self.store.table[k] = self._fill(k, alone=True)
             return
         if region not in self._templates:
             self._templates[region] = self._fill(k, alone=False)
-        self.table[k] = self._templates[region]
+        self.store.table[k] = self._templates[region]
 
     def _fill(self, k: int, *, alone: bool) -> NDArray[np.int64]:
         """New cells for a plane's region; returns the table of each column."""
         edges = _ring_edges(self._regions[k])
         cursor = np.zeros(1, dtype=np.int64)
-        tables = np.zeros(self.columns, dtype=np.int64)
+        tables = np.zeros(self.grid.columns, dtype=np.int64)
         while True:
-            answer = kernels.fill_plane(
-                edges,
-                alone,
-                self.grid,
-                self.tiles,
-                tables,
-                self.page,
-                self._own_table,
-                self._own,
-                self._used,
-                self.cells,
-                self.pool,
-                self._free,
-                self._toggles[0],
-                self._work,
-                self._out,
-                cursor,
-            )
-            if answer == kernels.DONE:
+            answer = fill_plane(edges, alone, self.grid, self.store, tables, self._scratch, cursor)
+            if answer == layout.DONE:
                 return tables
             self._make_room(answer)
 
     def _make_room(self, answer: int) -> None:
-        if answer == kernels.POOL_FULL:
-            pool = np.empty((2 * len(self.pool), 5))
-            pool[: len(self.pool)] = self.pool
-            self.pool = pool
-        elif answer == kernels.CELLS_FULL:
-            self._lengthen(len(self.cells) + kernels.PAGE_TILES * self.page.shape[1], "cells")
-        elif answer == kernels.TABLES_FULL:
-            self._lengthen(64 + len(self.page), "page", "_own_table", "_own")
+        """Lengthen the arrays that a kernel found too short."""
+        store = self.store
+        if answer == layout.POOL_FULL:
+            self.store = store._replace(pool=_longer(store.pool, len(store.pool)))
+        elif answer == layout.CELLS_FULL:
+            self.store = store._replace(
+                cells=_longer(store.cells, len(store.cells) + layout.PAGE_TILES * store.page.shape[1])
+            )
+        elif answer == layout.TABLES_FULL:
+            self.store = store._replace(
+                page=_longer(store.page, 64 + len(store.page)),
+                own_table=_longer(store.own_table, 64 + len(store.page)),
+                own=_longer(store.own, 64 + len(store.page)),
+            )
         else:
-            self._make_scratch(2 * len(self._out))
-
-    def _lengthen(self, more: int, *names: str) -> None:
-        for name in names:
-            old = getattr(self, name)
-            new = np.zeros((len(old) + more, *old.shape[1:]), dtype=old.dtype)
-            new[: len(old)] = old
-            setattr(self, name, new)
+            self._scratch = _scratch(2 * len(self._scratch.out))
 
     def cut(self, strips: Strips, *, apply: bool = True) -> FloatArray:
         """Subtract strips (or only measure with ``apply=False``); returns the area taken from each of their planes."""
@@ -150,30 +127,8 @@ class CellFamily:
         removed = np.zeros(strips.planes)
         cursor = np.zeros(3, dtype=np.int64)
         while True:
-            answer = kernels.cut_planes(
-                strips.first,
-                strips.offsets,
-                strips.nodes,
-                strips.fresh,
-                self.grid,
-                self.tiles,
-                self.table,
-                self.page,
-                self._own_table,
-                self._own,
-                self._used,
-                self.cells,
-                self.pool,
-                self._free,
-                self._segments,
-                self._toggles[0],
-                self._toggles[1],
-                self._out,
-                cursor,
-                apply,
-                removed,
-            )
-            if answer == kernels.DONE:
+            answer = cut_planes(self.store, self.grid, strips, self._scratch, cursor, apply, removed)
+            if answer == layout.DONE:
                 break
             self._make_room(answer)
         if apply:
@@ -184,43 +139,27 @@ class CellFamily:
         self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
     ) -> lines.LineEnds:
         """Lines through planes, as `SliceStore.line_ends` gives them."""
-        for k in planes[self.table[planes, 0] == 0]:
+        for k in planes[self.store.table[planes, 0] == 0]:
             self.ensure(int(k), int(k) + 1)
-        kernel = line_kernels.cell_v_lines if fixed else line_kernels.cell_u_lines
+        kernel = v_lines if fixed else u_lines
+        tables = self.store.table[planes]
         return lines.collect(
             len(planes) * len(at_mm),
-            lambda offsets, ends, slopes: kernel(
-                at_mm,
-                window_mm,
-                lines.MERGE_MM,
-                self.table[planes],
-                self.page,
-                self.grid,
-                self.tiles,
-                self.cells,
-                self.pool,
-                offsets,
-                ends,
-                slopes,
-            ),
+            lambda out: kernel(at_mm, window_mm, lines.MERGE_MM, tables, self.grid, self.store, out),
         )
+
+    def vote(self, points_mm: FloatArray, planes: Planes, votes: NDArray[np.int8], least: int, most: int) -> None:
+        """Vote for each point (n, 3) with material on the nearest plane and ``least`` to ``most`` votes so far."""
+        contains(points_mm, planes, self.grid, self.store, votes, least, most)
 
     def region(self, k: int) -> Region:
         """Material on a plane as rings."""
         if not self.built(k):
             return self._regions[k]
-        room = 256 + 4 * self.columns
+        room = 256 + 4 * self.grid.columns
         while True:
             out = np.empty((room, 6))
-            n = kernels.plane_trapezoids(
-                self.table[k],
-                self.page,
-                self.grid,
-                self.tiles,
-                self.cells,
-                self.pool,
-                out,
-            )
+            n = plane_trapezoids(self.store.table[k], self.grid, self.store, out)
             if n >= 0:
                 break
             room *= 4
@@ -228,6 +167,39 @@ class CellFamily:
         lower = np.stack((t[:, [0, 2]], t[:, [1, 3]]), axis=1)
         upper = np.stack((t[:, [1, 5]], t[:, [0, 4]]), axis=1)
         return union_convex(np.concatenate((lower, upper), axis=1))
+
+
+def _empty_store(planes: int, columns: int, blocks: int) -> layout.CellStore:
+    """A store without cells; table 0 stands for planes that are not built."""
+    free: NDArray[np.int64] = np.full(_FREE_LISTS + 1, -1, dtype=np.int64)
+    free[-1] = 0
+    return layout.CellStore(
+        table=np.zeros((planes, columns), dtype=np.int64),
+        page=np.zeros((1, blocks), dtype=np.int64),
+        own_table=np.zeros(1, dtype=np.bool_),
+        own=np.zeros((1, blocks), dtype=np.bool_),
+        used=np.array([0, 1], dtype=np.int64),
+        cells=np.zeros((0, 4), dtype=np.int32),
+        pool=np.empty((1024, EDGE_COLUMNS)),
+        free=free,
+    )
+
+
+def _scratch(rows: int) -> layout.Scratch:
+    return layout.Scratch(
+        segments=np.empty((rows, 8)),
+        toggles_lo=np.empty(4 * rows),
+        toggles_hi=np.empty(4 * rows),
+        work=np.empty((rows, EDGE_COLUMNS)),
+        out=np.empty((rows, EDGE_COLUMNS)),
+    )
+
+
+def _longer(old: NDArray[_T], more: int) -> NDArray[_T]:
+    """A copy of an array with more rows, 0 at first."""
+    new = np.zeros((len(old) + more, *old.shape[1:]), dtype=old.dtype)
+    new[: len(old)] = old
+    return new
 
 
 def _ring_edges(region: Region) -> FloatArray:

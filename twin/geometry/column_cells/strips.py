@@ -1,8 +1,8 @@
-"""Sections of a convex body by a run of parallel planes, each a strip lo(u) <= v <= hi(u)."""
+"""Sections of a convex body by consecutive parallel planes, each a strip lo(u) <= v <= hi(u)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Strips:
-    """One strip a plane; a plane that the body misses has no nodes.
+class Strips(NamedTuple):
+    """One strip per plane; a plane that the body misses has no nodes.
 
     Attributes:
         first: index of the first plane.
-        offsets: shape (planes + 1,), where each plane's nodes begin.
+        offsets: shape (planes + 1,), first node of each plane.
         nodes: shape (n, 3): u increasing on each plane, lo (convex in u), hi (concave in u), lo <= hi.
         fresh: shape (n,), False where the strip holds no material, because it has been cut already; between two such
             nodes nothing is cut.

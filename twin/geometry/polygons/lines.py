@@ -1,48 +1,34 @@
-"""Straight lines through the material of a plane: where they enter and leave it, and how the boundary leans there."""
+"""Straight lines through the material of a plane: their ends in it, and the slope of the boundary there."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry.polygons import line_kernels as kernels
+from twin.geometry.polygons.line_kernels import LineEnds, ring_lines
+
+__all__ = ["MERGE_MM", "LineEnds", "collect", "ring_line_ends"]
 
 #: Ends of material no further apart than this cancel: far below any slice pitch, far above rounding.
 MERGE_MM = 1e-8
 
 
-class LineEnds(NamedTuple):
-    """Material on parallel lines of a plane.
-
-    Attributes:
-        offsets: shape (lines + 1,); line i has the values from ``offsets[i]`` to ``offsets[i + 1]``, an even number.
-        ends_mm: increasing on each line: material from the first to the second, from the third to the fourth, ...
-        slopes: d(end) / d(position of the line) of the boundary at each end; 0 where it is square to the line.
-    """
-
-    offsets: NDArray[np.int64]
-    ends_mm: FloatArray
-    slopes: FloatArray
-
-
-def collect(count: int, fill: Callable[[NDArray[np.int64], FloatArray, FloatArray], int]) -> LineEnds:
+def collect(count: int, fill: Callable[[LineEnds], int]) -> LineEnds:
     """Call a kernel with more and more room until its ends fit.
 
     Args:
         count: number of lines.
-        fill: takes offsets, ends and slopes to fill; returns how many ends there are, or -1 when they do not fit.
+        fill: takes arrays to fill; returns the number of ends, or -1 when they do not fit.
     """
     offsets = np.zeros(count + 1, dtype=np.int64)
     room = 64 + 8 * count
     while True:
-        ends, slopes = np.empty(room), np.empty(room)
-        n = fill(offsets, ends, slopes)
+        found = LineEnds(offsets, np.empty(room), np.empty(room))
+        n = fill(found)
         if n >= 0:
-            return LineEnds(offsets, ends[:n], slopes[:n])
+            return LineEnds(offsets, found.ends_mm[:n], found.slopes[:n])
         room *= 4
 
 
@@ -69,7 +55,4 @@ def ring_line_ends(planes: Iterable[Sequence[FloatArray]], fixed: int, at_mm: Fl
 def _through(rings: Sequence[FloatArray], fixed: int, at_mm: FloatArray) -> LineEnds:
     edges = [np.column_stack((r, np.roll(r, -1, axis=0))) for r in rings]
     rows = np.concatenate(edges) if edges else np.empty((0, 4))
-    return collect(
-        len(at_mm),
-        lambda offsets, ends, slopes: kernels.ring_lines(at_mm, fixed, MERGE_MM, rows, offsets, ends, slopes),
-    )
+    return collect(len(at_mm), lambda out: ring_lines(at_mm, fixed, MERGE_MM, rows, out))

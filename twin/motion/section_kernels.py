@@ -1,0 +1,248 @@
+"""Sections of a convex tool, swept along a straight line, by parallel planes; compiled.
+
+Coordinates are those of `twin.motion.swept_kernels`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+from twin.geometry.column_cells.strips import Strips
+from twin.jit import njit
+from twin.motion.swept_kernels import BodyShape, Motion, disc_upper, highest, lowest, reach, side, upside_down
+
+_START_INTERVALS = 8
+_MAX_DEPTH = 7
+_NODE_FIELDS = 5
+#: Sections that differ by less than this part of the tool's radius are the same but for rounding; so is their size.
+_SAME_SECTION, _NO_SECTION = 1e-12, 1e-9
+#: Nodes keep this part of half a section's width from its middle, for rounding.
+_INSET = 1.0 - 1e-12
+
+
+class Planes(NamedTuple):
+    """Planes that cut a sweep, and how closely.
+
+    Attributes:
+        horizontal: whether the tool axis is their normal.
+        first_w, pitch, planes: position of the first, their distance, mm, and their number.
+        chord: how far a chord of lo or hi may stand off its curve, mm.
+        start_is_cut: the body's volume at the start has been cut already. Then nodes where the section is no more than
+            that of the body standing there are not fresh, and no chords are refined between them: they cut nothing new.
+        top: height above which there is no material; for vertical planes.
+    """
+
+    horizontal: bool
+    first_w: float
+    pitch: float
+    planes: int
+    chord: float
+    start_is_cut: bool
+    top: float
+
+
+class _Section(NamedTuple):
+    """One plane's section: u runs ``half`` to either side of ``middle`` on the plane ``w``."""
+
+    w: float
+    middle: float
+    half: float
+
+
+class _Node(NamedTuple):
+    """A node of a strip: ``phi`` is the angle whose cosine places u in the section, from 0 to pi."""
+
+    phi: float
+    u: float
+    lo: float
+    hi: float
+    fresh: bool
+
+
+@njit
+def section_nodes(body: BodyShape, motion: Motion, planes: Planes, strips: Strips) -> int:
+    """Strips of a swept body on consecutive planes.
+
+    Nodes are placed by halving until no chord of lo or hi stands off its curve by more than the chord tolerance, evenly
+    in the angle whose cosine is u, which follows a round section's vertical ends.
+
+    Args:
+        strips: its arrays are filled.
+
+    Returns:
+        Number of nodes written, or -1 when they do not fit.
+    """
+    stack = np.empty((_MAX_DEPTH + 2, _NODE_FIELDS))
+    offsets, nodes, fresh = strips.offsets, strips.nodes, strips.fresh
+    written = 0
+    offsets[0] = 0
+    for i in range(planes.planes):
+        w = planes.first_w + i * planes.pitch
+        if i > 0 and _same_as_before(body, motion, planes, w):
+            written = _repeat_nodes(nodes, fresh, offsets[i - 1], written)
+        else:
+            written = _plane_nodes(body, motion, planes, w, stack, nodes, fresh, written)
+        if written < 0:
+            return -1
+        offsets[i + 1] = written
+    return written
+
+
+@njit
+def _same_as_before(body: BodyShape, motion: Motion, planes: Planes, w: float) -> bool:
+    """Whether a plane's section is that of the plane before: the whole tool passes straight through both."""
+    if planes.horizontal or motion.du != 0.0 or motion.dv != 0.0:
+        return False
+    passed_from = min(motion.w, motion.w + motion.dw) + body.meridian.radius
+    passed_to = max(motion.w, motion.w + motion.dw) - body.meridian.radius
+    return w - planes.pitch >= passed_from and w <= passed_to
+
+
+@njit
+def _repeat_nodes(nodes: FloatArray, fresh: NDArray[np.bool_], first: int, end: int) -> int:
+    """Append the last plane's nodes, [first, end), again; returns the number then, or -1 when they do not fit."""
+    after = end + (end - first)
+    if after > len(nodes):
+        return -1
+    for n in range(first, end):
+        m = n + (end - first)
+        nodes[m, 0], nodes[m, 1], nodes[m, 2] = nodes[n, 0], nodes[n, 1], nodes[n, 2]
+        fresh[m] = fresh[n]
+    return after
+
+
+@njit
+def _plane_nodes(
+    body: BodyShape,
+    motion: Motion,
+    planes: Planes,
+    w: float,
+    stack: FloatArray,
+    nodes: FloatArray,
+    fresh: NDArray[np.bool_],
+    written: int,
+) -> int:
+    """Append one plane's nodes; returns the number then, or -1 when they do not fit."""
+    low, high = _range_of_u(body, planes.horizontal, motion, w)
+    half = 0.5 * (high - low)
+    if not half > _NO_SECTION * body.meridian.radius:
+        return written
+    section = _Section(w, 0.5 * (high + low), half * _INSET)
+    first = written
+    left = _node_at(body, motion, planes, section, 0.0)
+    written = _append_node(left, nodes, fresh, written)
+    for piece in range(_START_INTERVALS):
+        depth = 0
+        _push(stack, depth, _node_at(body, motion, planes, section, math.pi * (piece + 1) / _START_INTERVALS))
+        while depth >= 0:
+            right = _node_of(stack, depth)
+            middle = _node_at(body, motion, planes, section, 0.5 * (left.phi + right.phi))
+            if depth >= _MAX_DEPTH or _is_straight(left, middle, right, planes.chord):
+                written = _append_node(right, nodes, fresh, written)
+                left = right
+                depth -= 1
+            else:
+                depth += 1
+                _push(stack, depth, middle)
+        if written < 0:
+            return -1
+    return written if written - first >= 2 else first
+
+
+@njit
+def _append_node(node: _Node, nodes: FloatArray, fresh: NDArray[np.bool_], written: int) -> int:
+    """Append a node unless its section is empty; returns the number of nodes then, or -1 when they do not fit."""
+    if written < 0 or not node.lo <= node.hi:
+        return written
+    if written >= len(nodes):
+        return -1
+    nodes[written, 0], nodes[written, 1], nodes[written, 2] = node.u, node.lo, node.hi
+    fresh[written] = node.fresh
+    return written + 1
+
+
+@njit
+def _push(stack: FloatArray, depth: int, node: _Node) -> None:
+    stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3] = node.phi, node.u, node.lo, node.hi
+    stack[depth, 4] = 1.0 if node.fresh else 0.0
+
+
+@njit
+def _node_of(stack: FloatArray, depth: int) -> _Node:
+    return _Node(stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3], stack[depth, 4] > 0.0)
+
+
+@njit
+def _is_straight(left: _Node, middle: _Node, right: _Node, chord: float) -> bool:
+    """Whether lo and hi need no node between two, judged by one in the middle."""
+    if not (left.fresh or right.fresh or middle.fresh):
+        return True
+    if not (left.lo <= left.hi and right.lo <= right.hi and middle.lo <= middle.hi):
+        return True
+    return (
+        _off_chord(middle.u, middle.lo, left.u, left.lo, right.u, right.lo) <= chord
+        and _off_chord(middle.u, middle.hi, left.u, left.hi, right.u, right.hi) <= chord
+    )
+
+
+@njit
+def _off_chord(u: float, v: float, ua: float, va: float, ub: float, vb: float) -> float:
+    """Distance of a point from the chord between two others."""
+    du = ub - ua
+    dv = vb - va
+    length = math.hypot(du, dv)
+    if length == 0.0:
+        return math.hypot(u - ua, v - va)
+    return abs((u - ua) * dv - (v - va) * du) / length
+
+
+@njit
+def _node_at(body: BodyShape, motion: Motion, planes: Planes, section: _Section, phi: float) -> _Node:
+    """The node of a section at an angle."""
+    u = section.middle - section.half * math.cos(phi)
+    lo, hi = _strip_at(body, planes.horizontal, motion, section.w, u)
+    fresh = not planes.start_is_cut or _is_new(body, motion, planes, section.w, u, lo, hi)
+    return _Node(phi, u, lo, hi, fresh)
+
+
+@njit
+def _is_new(body: BodyShape, motion: Motion, planes: Planes, w: float, u: float, lo: float, hi: float) -> bool:
+    """Whether a section reaches beyond that of the body standing at the start, below the top of the material."""
+    if not lo <= hi:
+        return True
+    start = Motion(motion.w, 0.0, motion.u, 0.0, motion.v, 0.0)
+    lo_start, hi_start = _strip_at(body, planes.horizontal, start, w, u)
+    if not lo_start <= hi_start:
+        return True
+    if not planes.horizontal:
+        hi, hi_start = min(hi, planes.top), min(hi_start, planes.top)
+    same = _SAME_SECTION * body.meridian.radius
+    return lo < lo_start - same or hi > hi_start + same
+
+
+@njit
+def _strip_at(body: BodyShape, horizontal: bool, motion: Motion, w: float, u: float) -> tuple[float, float]:
+    """The lo and hi of the section by the plane w at u; (inf, -inf) where there is none."""
+    if horizontal:
+        return -side(body, upside_down(motion), w, u), side(body, motion, w, u)
+    lo = max(lowest(body, motion, w, u), motion.v + min(0.0, motion.dv))
+    return lo, highest(body, motion, w, u)
+
+
+@njit
+def _range_of_u(body: BodyShape, horizontal: bool, motion: Motion, w: float) -> tuple[float, float]:
+    """Extent of the section by the plane w along u; empty when first > last."""
+    u, du = motion.u, motion.du
+    if horizontal:
+        if w < motion.w + min(0.0, motion.dw):
+            return math.inf, -math.inf
+        opposite = Motion(motion.w, motion.dw, -u, -du, motion.v, motion.dv)
+        return -reach(body, opposite, w), reach(body, motion, w)
+    radius = body.meridian.radius
+    low = -disc_upper(motion.w, motion.dw, -u, -du, radius, w, 0.0, 1.0)
+    return low, disc_upper(motion.w, motion.dw, u, du, radius, w, 0.0, 1.0)

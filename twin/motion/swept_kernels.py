@@ -1,0 +1,402 @@
+"""Surface of a convex tool swept along a straight line; compiled.
+
+Coordinates of a motion are ordered (w, u, v): w along the normal of the planes that cut it. For the vertical families
+(yz: w = x, u = y, v = z; zx: w = y, u = x, v = z) v is the tool axis; for the horizontal one (xy: w = z, u = x, v = y)
+w is. The parameter t runs from 0 to 1.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+from twin.jit import njit
+from twin.tools.meridian import Meridian
+from twin.tools.meridian_kernels import is_ball, is_flat, profile_height, profile_radius
+
+_GOLDEN = 0.6180339887498949
+_SEARCH_STEPS = 42
+_RADIUS = Meridian._fields.index("radius")
+
+
+class BodyShape(NamedTuple):
+    """A body of revolution on the tool axis.
+
+    Attributes:
+        meridian: heights above the body's lowest point.
+        drop: how far that lies below the tool tip, mm.
+    """
+
+    meridian: Meridian
+    drop: float
+
+
+class Motion(NamedTuple):
+    """A point moving in a straight line: (w + t dw, u + t du, v + t dv), t from 0 to 1; mm."""
+
+    w: float
+    dw: float
+    u: float
+    du: float
+    v: float
+    dv: float
+
+
+@njit
+def upside_down(motion: Motion) -> Motion:
+    """A motion mirrored in v = 0."""
+    return Motion(motion.w, motion.dw, motion.u, motion.du, -motion.v, -motion.dv)
+
+
+@njit
+def sphere_upper(motion: Motion, radius: float, w: float, u: float, first: float, last: float) -> float:
+    """Largest v on a sphere swept along a motion, t in [first, last], above the point (w, u).
+
+    Returns -inf where the sweep does not cover (w, u).
+    """
+    ew = w - motion.w
+    eu = u - motion.u
+    square = motion.dw * motion.dw + motion.du * motion.du
+    if square == 0.0:
+        rest = radius * radius - ew * ew - eu * eu
+        if rest < 0.0:
+            return -math.inf
+        return motion.v + max(motion.dv * first, motion.dv * last) + math.sqrt(rest)
+    cross = ew * motion.du - eu * motion.dw
+    rest = radius * radius - cross * cross / square
+    if rest < 0.0:
+        return -math.inf
+    root = math.sqrt(rest)
+    middle = (ew * motion.dw + eu * motion.du) / square
+    half = root / math.sqrt(square)
+    first = max(first, middle - half)
+    last = min(last, middle + half)
+    if first > last:
+        return -math.inf
+    best = middle + motion.dv * root / math.sqrt(square * (square + motion.dv * motion.dv))
+    t = min(max(best, first), last)
+    off = t - middle
+    return motion.v + motion.dv * t + math.sqrt(max(0.0, rest - square * off * off))
+
+
+@njit
+def disc_upper(u0: float, du: float, v0: float, dv: float, radius: float, u: float, first: float, last: float) -> float:
+    """Largest v at u on a disc in the (u, v) plane swept along (u0 + t du, v0 + t dv); -inf where there is none."""
+    return sphere_upper(Motion(u0, du, 0.0, 0.0, v0, dv), radius, u, 0.0, first, last)
+
+
+@njit
+def _covering_times(motion: Motion, radius: float, w: float, u: float) -> tuple[float, float]:
+    """Interval of t in [0, 1] in which a disc moving in the (w, u) plane covers a point; empty when first > last."""
+    ew = w - motion.w
+    eu = u - motion.u
+    square = motion.dw * motion.dw + motion.du * motion.du
+    if square == 0.0:
+        if ew * ew + eu * eu > radius * radius:
+            return 1.0, 0.0
+        return 0.0, 1.0
+    cross = ew * motion.du - eu * motion.dw
+    rest = radius * radius - cross * cross / square
+    if rest < 0.0:
+        return 1.0, 0.0
+    middle = (ew * motion.dw + eu * motion.du) / square
+    half = math.sqrt(rest / square)
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+@njit
+def lowest(body: BodyShape, motion: Motion, w: float, u: float) -> float:
+    """Lowest point of the swept body above the plan point (w, u); +inf where the sweep does not cover it."""
+    tool = body.meridian
+    base = motion.v - body.drop
+    if is_ball(tool):
+        centre = Motion(motion.w, motion.dw, motion.u, motion.du, base + tool.corner, motion.dv)
+        return -sphere_upper(upside_down(centre), tool.corner, w, u, 0.0, 1.0)
+    first, last = _covering_times(motion, tool.radius, w, u)
+    if first > last:
+        return math.inf
+    if is_flat(tool):
+        return base + min(motion.dv * first, motion.dv * last)
+    off = Motion(w - motion.w, motion.dw, u - motion.u, motion.du, 0.0, motion.dv)
+    square = motion.dw * motion.dw + motion.du * motion.du
+    if square == 0.0:
+        return base + min(0.0, motion.dv) + profile_height(tool, min(math.hypot(off.w, off.u), tool.radius))
+    if motion.dv == 0.0:
+        t = min(max((off.w * motion.dw + off.u * motion.du) / square, first), last)
+        return base + profile_height(tool, _distance(tool, off, t))
+    return base + _lowest_by_search(tool, off, first, last)
+
+
+@njit
+def _distance(tool: Meridian, off: Motion, t: float) -> float:
+    """Distance of a plan point from the tool axis, at most the tool's radius; ``off`` is its offset at t = 0."""
+    return min(math.hypot(off.w - t * off.dw, off.u - t * off.du), tool.radius)
+
+
+@njit
+def _height_at(tool: Meridian, off: Motion, t: float) -> float:
+    """Height of the tool's lower surface over a plan point; see `_distance`."""
+    return off.dv * t + profile_height(tool, _distance(tool, off, t))
+
+
+@njit
+def _lowest_by_search(tool: Meridian, off: Motion, first: float, last: float) -> float:
+    """Minimum of `_height_at`, a convex function of t, by golden section."""
+    x0 = last - _GOLDEN * (last - first)
+    x1 = first + _GOLDEN * (last - first)
+    f0 = _height_at(tool, off, x0)
+    f1 = _height_at(tool, off, x1)
+    best = min(_height_at(tool, off, first), _height_at(tool, off, last))
+    for _ in range(_SEARCH_STEPS):
+        if f0 < f1:
+            last = x1
+            x1 = x0
+            f1 = f0
+            x0 = last - _GOLDEN * (last - first)
+            f0 = _height_at(tool, off, x0)
+        else:
+            first = x0
+            x0 = x1
+            f0 = f1
+            x1 = first + _GOLDEN * (last - first)
+            f1 = _height_at(tool, off, x1)
+    return min(best, f0, f1)
+
+
+@njit
+def highest(body: BodyShape, motion: Motion, w: float, u: float) -> float:
+    """Top of the swept body above the plan point (w, u); -inf where the sweep does not cover it."""
+    first, last = _covering_times(motion, body.meridian.radius, w, u)
+    if first > last:
+        return -math.inf
+    return motion.v - body.drop + body.meridian.height + max(motion.dv * first, motion.dv * last)
+
+
+@njit
+def _half_chord_by_search(tool: Meridian, disc: Motion, u: float, ta: float, tb: float) -> float:
+    """Maximum over t in [ta, tb] of v(t) + sqrt(r(w(t))^2 - (u - u(t))^2), -inf where no disc reaches u.
+
+    The half chord is concave in t: find where the disc reaches farthest over u, then both ends of the interval in
+    which it reaches at all, then the maximum inside.
+
+    Args:
+        disc: the section's centre; w is its height above the tool's lowest point.
+    """
+    top = _farthest_reach(tool, disc, u, ta, tb)
+    if _reach_over(tool, disc, u, top) < 0.0:
+        for t in (ta, tb):
+            if _reach_over(tool, disc, u, t) >= 0.0:
+                top = t
+        if _reach_over(tool, disc, u, top) < 0.0:
+            return -math.inf
+    first = _edge_of_reach(tool, disc, u, top, ta)
+    last = _edge_of_reach(tool, disc, u, top, tb)
+    best = -math.inf
+    a = first
+    b = last
+    for _ in range(_SEARCH_STEPS):
+        x0 = b - _GOLDEN * (b - a)
+        x1 = a + _GOLDEN * (b - a)
+        f0 = _half_chord_end(tool, disc, u, x0)
+        f1 = _half_chord_end(tool, disc, u, x1)
+        best = max(best, f0, f1)
+        if f0 > f1:
+            b = x1
+        else:
+            a = x0
+    return max(best, _half_chord_end(tool, disc, u, first), _half_chord_end(tool, disc, u, last))
+
+
+@njit
+def _farthest_reach(tool: Meridian, disc: Motion, u: float, a: float, b: float) -> float:
+    """The t in [a, b] at which a section reaches farthest over u, by golden section."""
+    for _ in range(_SEARCH_STEPS):
+        x0 = b - _GOLDEN * (b - a)
+        x1 = a + _GOLDEN * (b - a)
+        if _reach_over(tool, disc, u, x0) > _reach_over(tool, disc, u, x1):
+            b = x1
+        else:
+            a = x0
+    return 0.5 * (a + b)
+
+
+@njit
+def _reach_over(tool: Meridian, disc: Motion, u: float, t: float) -> float:
+    """How far a section at height w reaches over the line u; negative where it does not."""
+    return profile_radius(tool, disc.w + disc.dw * t) - abs(u - disc.u - disc.du * t)
+
+
+@njit
+def _half_chord_end(tool: Meridian, disc: Motion, u: float, t: float) -> float:
+    """The v at which the line u leaves a section at height w."""
+    radius = profile_radius(tool, disc.w + disc.dw * t)
+    off = u - disc.u - disc.du * t
+    return disc.v + disc.dv * t + math.sqrt(max(0.0, radius * radius - off * off))
+
+
+@njit
+def _edge_of_reach(tool: Meridian, disc: Motion, u: float, inside: float, end: float) -> float:
+    """The t nearest to ``end`` at which the section still reaches over u, from one at which it does."""
+    if _reach_over(tool, disc, u, end) >= 0.0:
+        return end
+    a = inside
+    b = end
+    for _ in range(_SEARCH_STEPS):
+        middle = 0.5 * (a + b)
+        if _reach_over(tool, disc, u, middle) >= 0.0:
+            a = middle
+        else:
+            b = middle
+    return a
+
+
+@njit
+def _times_at_height(base: float, dz: float, z: float, low: float, high: float) -> tuple[float, float]:
+    """Interval of t in [0, 1] with low <= z - base - dz t <= high; empty when first > last."""
+    if dz == 0.0:
+        if low <= z - base <= high:
+            return 0.0, 1.0
+        return 1.0, 0.0
+    t0 = (z - base - low) / dz
+    t1 = (z - base - high) / dz
+    return max(0.0, min(t0, t1)), min(1.0, max(t0, t1))
+
+
+@njit
+def side(body: BodyShape, motion: Motion, z: float, u: float) -> float:
+    """Largest v of the swept body's section at height z on the line u; -inf where there is none.
+
+    Args:
+        motion: w is the height.
+    """
+    tool = body.meridian
+    base, dz = motion.w - body.drop, motion.dw
+    ta, tb = _times_at_height(base, dz, z, 0.0, tool.height)
+    if ta > tb:
+        return -math.inf
+    h0 = z - base
+    if dz == 0.0:
+        return disc_upper(motion.u, motion.du, motion.v, motion.dv, profile_radius(tool, h0), u, 0.0, 1.0)
+    if motion.du == 0.0 and motion.dv == 0.0:
+        radius = profile_radius(tool, max(h0 - dz * ta, h0 - dz * tb))
+        return disc_upper(motion.u, 0.0, motion.v, 0.0, radius, u, 0.0, 1.0)
+    if is_ball(tool) or is_flat(tool):
+        return _side_of_ball_or_flat(tool, motion, base, z, u)
+    return _half_chord_by_search(tool, Motion(h0, -dz, motion.u, motion.du, motion.v, motion.dv), u, ta, tb)
+
+
+@njit
+def _side_of_ball_or_flat(tool: Meridian, motion: Motion, base: float, z: float, u: float) -> float:
+    """As `side` for a ball or flat tool, whose lowest point begins at the height ``base``."""
+    value = -math.inf
+    if tool.corner > 0.0:
+        first, last = _times_at_height(base, motion.dw, z, 0.0, tool.arc_height)
+        if first <= last:
+            centre = Motion(motion.u, motion.du, base + tool.corner, motion.dw, motion.v, motion.dv)
+            value = sphere_upper(centre, tool.corner, u, z, first, last)
+    first, last = _times_at_height(base, motion.dw, z, tool.arc_height, tool.height)
+    if first <= last:
+        wall = disc_upper(motion.u, motion.du, motion.v, motion.dv, tool.radius, u, first, last)
+        value = max(value, wall)
+    return value
+
+
+@njit
+def reach(body: BodyShape, motion: Motion, z: float) -> float:
+    """Largest u of the swept body's section at height z; -inf where there is none.
+
+    Args:
+        motion: w is the height.
+    """
+    tool = body.meridian
+    base = motion.w - body.drop
+    a, b = _times_at_height(base, motion.dw, z, 0.0, tool.height)
+    if a > b:
+        return -math.inf
+    best = max(_reach_at(tool, motion, z - base, a), _reach_at(tool, motion, z - base, b))
+    if motion.dw == 0.0:
+        return best
+    for _ in range(_SEARCH_STEPS):
+        x0 = b - _GOLDEN * (b - a)
+        x1 = a + _GOLDEN * (b - a)
+        f0 = _reach_at(tool, motion, z - base, x0)
+        f1 = _reach_at(tool, motion, z - base, x1)
+        best = max(best, f0, f1)
+        if f0 > f1:
+            b = x1
+        else:
+            a = x0
+    return best
+
+
+@njit
+def _reach_at(tool: Meridian, motion: Motion, height: float, t: float) -> float:
+    """Largest u of the body's section at one time; ``height`` above its lowest point at t = 0."""
+    return motion.u + motion.du * t + profile_radius(tool, height - motion.dw * t)
+
+
+class Sweeps(NamedTuple):
+    """Several swept bodies.
+
+    Attributes:
+        bodies: shape (m, 8), the numbers of each `BodyShape` in their order.
+        starts, moves: shape (m, 3), start and motion of the tool tip, mm.
+    """
+
+    bodies: FloatArray
+    starts: FloatArray
+    moves: FloatArray
+
+
+@njit
+def _body_of(bodies: FloatArray, j: int) -> BodyShape:
+    """The body in a row."""
+    return BodyShape(
+        Meridian(bodies[j, 0], bodies[j, 1], bodies[j, 2], bodies[j, 3], bodies[j, 4], bodies[j, 5], bodies[j, 6]),
+        bodies[j, 7],
+    )
+
+
+@njit
+def outside_sweeps(
+    points: FloatArray, candidates: NDArray[np.bool_], counts: NDArray[np.int64], sweeps: Sweeps, depth: float
+) -> None:
+    """Clear the candidates that lie deeper than ``depth`` inside one of several swept bodies.
+
+    Args:
+        points: shape (n, 3), mm.
+        candidates: shape (n,), changed in place.
+        counts: shape (n,), how many of the sweeps, from the first, count for each point.
+    """
+    bodies, starts, moves = sweeps.bodies, sweeps.starts, sweeps.moves
+    for i in range(len(points)):
+        if not candidates[i]:
+            continue
+        x = points[i, 0]
+        y = points[i, 1]
+        z = points[i, 2]
+        for j in range(counts[i] - 1, -1, -1):
+            motion = Motion(starts[j, 0], moves[j, 0], starts[j, 1], moves[j, 1], starts[j, 2], moves[j, 2])
+            if _in_box(motion, bodies[j, _RADIUS], x, y, z) and _inside(_body_of(bodies, j), motion, depth, x, y, z):
+                candidates[i] = False
+                break
+
+
+@njit
+def _in_box(motion: Motion, radius: float, x: float, y: float, z: float) -> bool:
+    """Whether a point lies in the box of a sweep, above the tip's lower end; w is x, u is y, v is z."""
+    if z < motion.v + min(0.0, motion.dv):
+        return False
+    if x < motion.w + min(0.0, motion.dw) - radius or x > motion.w + max(0.0, motion.dw) + radius:
+        return False
+    return motion.u + min(0.0, motion.du) - radius <= y <= motion.u + max(0.0, motion.du) + radius
+
+
+@njit
+def _inside(body: BodyShape, motion: Motion, depth: float, x: float, y: float, z: float) -> bool:
+    """Whether a point lies deeper than ``depth`` above the lower surface of a sweep, and below its top."""
+    return z < highest(body, motion, x, y) and z > lowest(body, motion, x, y) + depth
