@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.cutting import kernels
+from twin.cutting import engagement_kernels as kernels
+from twin.cutting.edge_arrays import EdgeArrays, RowAngles
 from twin.motion.sweep import SweptVolume
 from twin.record import Engagement
 from twin.tolerance import Tolerance
@@ -107,9 +108,7 @@ class Engager:
         self._edges = edges
         self._enough = 1 if rule == "any" else 2
         self._tolerance = tolerance
-        theta = np.arange(rows) * (2.0 * math.pi / rows)
-        self._cos_theta, self._sin_theta = np.cos(theta), np.sin(theta)
-        self._cos_kappa, self._sin_kappa = np.cos(edges.kappa_rad), np.sin(edges.kappa_rad)
+        self._rows, self._edge_arrays = row_angles(rows), edge_arrays(edges)
         end_edge = edges.kappa_rad == 0.0
         self._gate = np.where(end_edge, math.sin(math.radians(DISH_DEG)), tolerance.gate)
         self._middle = 0.5 * (edges.bounds_mm[:-1] + edges.bounds_mm[1:])
@@ -165,7 +164,7 @@ class Engager:
         if reach <= 0.0:
             return None
         elements = min(len(self._edges.z_mm), int(np.searchsorted(self._edges.z_mm, reach)) + 1)
-        status = scratch.array("status", np.int8, len(at), len(self._cos_theta), elements)
+        status = scratch.array("status", np.int8, len(at), len(self._rows.cos), elements)
         if not self._ask_front(at, workpiece, pending, status, scratch):
             return None
         share, turn = self._boundaries(at, workpiece, pending, status, scratch)
@@ -175,28 +174,22 @@ class Engager:
         self, at: Positions, workpiece: TriSlices, pending: SweptVolume, status: NDArray[np.int8], scratch: Scratch
     ) -> bool:
         """Fill the status maps; tells whether any point is engaged."""
-        elements = status.shape[2]
         points = scratch.array("points", np.float64, status.size, 3)
-        places = scratch.array("places", np.int32, status.size)
+        entries = scratch.array("entries", np.int32, status.size)
         count = kernels.front_points(
             at.tip_mm,
             at.feed,
-            self._cos_theta,
-            self._sin_theta,
-            self._edges.radius_mm,
-            self._edges.z_mm,
-            self._cos_kappa,
-            self._sin_kappa,
-            elements,
+            self._rows,
+            self._edge_arrays,
             self._gate,
             status,
             points,
-            places,
+            entries,
         )
-        points, places = points[:count], places[:count]
-        steps = places // status[0].size if len(pending) else places
+        points, entries = points[:count], entries[:count]
+        steps = entries // status[0].size if len(pending) else entries
         inside = self._in_material(points, steps, at, workpiece, pending)
-        return bool(kernels.mark(places, inside, status.reshape(-1)))
+        return bool(kernels.mark(entries, inside, status.reshape(-1)))
 
     def _in_material(
         self,
@@ -257,15 +250,11 @@ class Engager:
             on = meridian(self._shape, self._along(found[:split], part[:split]))
             kernels.boundary_points(
                 at.tip_mm,
-                found,
-                split,
-                part,
+                kernels.Boundaries(found, split, part),
                 on.radius_mm,
                 on.height_mm,
-                self._cos_theta,
-                self._sin_theta,
-                self._edges.radius_mm,
-                self._edges.z_mm,
+                self._rows,
+                self._edge_arrays,
                 points,
             )
             kernels.narrow(self._in_material(points, found[:, 0], at, workpiece, pending), first, low, high)
@@ -274,22 +263,9 @@ class Engager:
     def _summaries(
         self, at: Positions, status: NDArray[np.int8], share: FloatArray, turn: FloatArray
     ) -> tuple[Engagement, ...]:
-        out = np.empty((len(at), 7))
-        kernels.summarise(
-            share,
-            turn,
-            status,
-            at.feed,
-            self._cos_theta,
-            self._sin_theta,
-            self._edges.radius_mm,
-            self._edges.z_mm,
-            self._cos_kappa,
-            self._sin_kappa,
-            self._edges.length_mm,
-            out,
-        )
-        row_rad = 2.0 * math.pi / len(self._cos_theta)
+        out = np.empty((len(at), kernels.SUMMARY_ENTRIES))
+        kernels.summarise(share, turn, status, at.feed, self._rows, self._edge_arrays, out)
+        row_rad = 2.0 * math.pi / len(self._rows.cos)
         given = zip(out.tolist(), at.feed_mm_s.tolist(), at.feed_per_tooth_mm.tolist(), strict=True)
         return tuple(_summary(values, row_rad, feed_mm_s, chip_mm) for values, feed_mm_s, chip_mm in given)
 
@@ -306,6 +282,17 @@ def _summary(values: list[float], row_rad: float, feed_mm_s: float, feed_per_too
         removal_rate_mm3_s=values[kernels.FRONT_AREA] * feed_mm_s,
         cutting=True,
     )
+
+
+def row_angles(rows: int) -> RowAngles:
+    """Cosine and sine of the rows of a map."""
+    theta = np.arange(rows) * (2.0 * math.pi / rows)
+    return RowAngles(np.cos(theta), np.sin(theta))
+
+
+def edge_arrays(edges: CuttingEdges) -> EdgeArrays:
+    """Edge elements as kernels take them."""
+    return EdgeArrays(edges.radius_mm, edges.z_mm, np.cos(edges.kappa_rad), np.sin(edges.kappa_rad), edges.length_mm)
 
 
 class Scratch:

@@ -1,13 +1,7 @@
 """Cutting forces at spindle angles from an engagement map (tri-slice paper, eq. 2 to 5, corrected).
 
-    dF_t = (Ktc h + Kte) db,  dF_r = (Krc h + Kre) db,  dF_a = (Kac h + Kae) db          (the paper prints Kre in dF_t)
-    h = s_t (n . f); with runout the least of what each earlier tooth left (Kline & DeVor)
-
-Force on the tool in machine axes; rows x, y, z, columns t, r, a (the paper's eq. 4 is no rotation as printed):
-
-    -sin t   -cos t sin k   -cos t cos k
-     cos t   -sin t sin k   -sin t cos k          M4 turns the sign of the first column
-     0        cos k         -sin k
+The equations themselves are in `twin.cutting.equation_kernels`; with runout the chip is the least that each earlier
+tooth left (Kline & DeVor).
 """
 
 from __future__ import annotations
@@ -19,9 +13,11 @@ from itertools import pairwise
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cutting import kernels
 from twin.cutting.coefficients import CuttingCoefficients
-from twin.cutting.engagement import EngagementMap, EngagementMaps
+from twin.cutting.edge_arrays import Flutes
+from twin.cutting.engagement import EngagementMap, EngagementMaps, edge_arrays, row_angles
+from twin.cutting.equation_kernels import Coefficients
+from twin.cutting.force_kernels import Steps, sum_forces_of_steps
 from twin.tolerance import Tolerance
 from twin.tools.edges import CuttingEdges
 
@@ -30,35 +26,13 @@ class ForceModel:
     """Forces of one tool in one material."""
 
     def __init__(self, edges: CuttingEdges, coefficients: CuttingCoefficients, rows: int, tolerance: Tolerance) -> None:
-        self._edges = edges
-        self._coefficients = coefficients.values
-        self._tolerance = tolerance
-        self._angle = edges.pitch_rad[:, None] + edges.lag_rad[None, :]
-        self._cos_kappa, self._sin_kappa = np.cos(edges.kappa_rad), np.sin(edges.kappa_rad)
-        theta = np.arange(rows) * (2.0 * math.pi / rows)
-        self._cos_row, self._sin_row = np.cos(theta), np.sin(theta)
+        self._edges, self._rows = edge_arrays(edges), row_angles(rows)
+        self._coefficients = Coefficients(*(float(getattr(coefficients, name)) for name in Coefficients._fields))
+        self._least_chip = float(tolerance.chip / edges.teeth)
         even = np.allclose(np.diff(edges.pitch_rad), 2.0 * math.pi / edges.teeth, atol=1e-12)
         alike = bool(even) and edges.runout_mm == 0.0
         self._period = rows // edges.teeth if alike and rows % edges.teeth == 0 else rows
-        self._feed_part, self._error = self._earlier_teeth(1 if alike else edges.teeth)
-
-    def _earlier_teeth(self, backs: int) -> tuple[FloatArray, FloatArray]:
-        """What the teeth before each tooth left: part of the feed per revolution since then, and runout.
-
-        Returns:
-            Shapes (teeth, backs) and (teeth, backs, elements): part of a revolution between a tooth and the one so
-            many before it, and how much farther out its elements are, mm.
-        """
-        edges = self._edges
-        radial = edges.runout_mm * np.cos(edges.runout_rad + self._angle)
-        part, error = np.empty((edges.teeth, backs)), np.empty((edges.teeth, backs, len(edges.z_mm)))
-        for m in range(edges.teeth):
-            for b in range(backs):
-                other = m - b - 1
-                gap = edges.pitch_rad[m] - edges.pitch_rad[other] + (2.0 * math.pi if other < 0 else 0.0)
-                part[m, b] = gap / (2.0 * math.pi)
-                error[m, b] = radial[m] - radial[other]
-        return part, error
+        self._flutes = _flutes(edges, 1 if alike else edges.teeth)
 
     def forces(
         self,
@@ -107,26 +81,30 @@ class ForceModel:
         offsets = np.zeros(len(spindle_rad) + 1, dtype=np.int64)
         np.cumsum([len(angles) for angles in spindle_rad], out=offsets[1:])
         out = np.empty((int(offsets[-1]), 4))
-        kernels.sum_forces_of_steps(
-            np.array([float(angles[0]) if len(angles) else 0.0 for angles in spindle_rad]),
-            offsets,
-            self._period,
-            sense,
-            feed,
-            feed_per_rev_mm,
-            self._feed_part,
-            engagement.share,
-            engagement.turn,
-            self._angle,
-            self._error,
-            self._edges.radius_mm,
-            self._cos_kappa,
-            self._sin_kappa,
-            self._edges.length_mm,
-            self._cos_row,
-            self._sin_row,
-            self._coefficients,
-            self._tolerance.chip / self._edges.teeth,
-            out,
+        steps = Steps(
+            first_rad=np.array([float(angles[0]) if len(angles) else 0.0 for angles in spindle_rad]),
+            offsets=offsets,
+            sense=sense,
+            feed=feed,
+            feed_per_rev=feed_per_rev_mm,
+            share=engagement.share,
+            turn=engagement.turn,
+        )
+        sum_forces_of_steps(
+            steps, self._flutes, self._edges, self._rows, self._coefficients, self._period, self._least_chip, out
         )
         return [out[a:b] for a, b in pairwise(offsets.tolist())]
+
+
+def _flutes(edges: CuttingEdges, backs: int) -> Flutes:
+    """Flutes with the material left by as many earlier teeth: feed since they passed, and runout between them."""
+    angle = edges.pitch_rad[:, None] + edges.lag_rad[None, :]
+    radial = edges.runout_mm * np.cos(edges.runout_rad + angle)
+    part, farther_out = np.empty((edges.teeth, backs)), np.empty((edges.teeth, backs, len(edges.z_mm)))
+    for m in range(edges.teeth):
+        for b in range(backs):
+            other = m - b - 1
+            gap = edges.pitch_rad[m] - edges.pitch_rad[other] + (2.0 * math.pi if other < 0 else 0.0)
+            part[m, b] = gap / (2.0 * math.pi)
+            farther_out[m, b] = radial[m] - radial[other]
+    return Flutes(angle, part, farther_out)

@@ -87,16 +87,15 @@ class Totals:
 
     def _add_forces(self, tool: _Sums, step: Step, sample_s: float) -> None:
         samples = step.samples
-        measured = kernels.measure(samples.force_n, samples.torque_nm, samples.power_w)
-        peaks = measured[kernels.PEAKS]
-        highest = float(peaks[3])
+        sums, peaks = kernels.measure(samples.force_n, samples.torque_nm, samples.power_w)
+        highest = float(peaks[kernels.RESULTANT])
         tool.sampled_s += sample_s * len(samples.torque_nm)
-        tool.impulse += measured[kernels.SUMS] * sample_s
-        if highest > tool.peak[3]:
+        tool.impulse += sums * sample_s
+        if highest > tool.peak[kernels.RESULTANT]:
             tool.peak_line = step.nc_line
-        tool.peak = np.maximum(tool.peak, peaks[:4])
-        tool.peak_torque_nm = max(tool.peak_torque_nm, float(peaks[4]))
-        tool.peak_power_w = max(tool.peak_power_w, float(peaks[5]))
+        tool.peak = np.maximum(tool.peak, peaks[: kernels.TORQUE])
+        tool.peak_torque_nm = max(tool.peak_torque_nm, float(peaks[kernels.TORQUE]))
+        tool.peak_power_w = max(tool.peak_power_w, float(peaks[kernels.POWER]))
         if highest > self._lines.get(step.nc_line, (0.0, ""))[0]:
             self._lines[step.nc_line] = (highest, self._block)
             if len(self._lines) > 100 * _TOP_LINES:
@@ -157,7 +156,7 @@ def _tool_summary(number: int, t: _Sums, removed_mm3: float) -> ToolSummary:
         peak_force_n=_four(t.peak),
         mean_force_n=_four(mean),
         peak_torque_nm=t.peak_torque_nm,
-        mean_torque_nm=float(mean[4]),
+        mean_torque_nm=float(mean[kernels.TORQUE]),
         peak_power_w=t.peak_power_w,
         peak_line=t.peak_line,
     )

@@ -24,7 +24,7 @@ SMOOTH_RAD = math.radians(8.0)
 SHARP = 0.1
 #: Part of a cell that vertices keep from its faces, and by which a crossing may miss its edge.
 MARGIN = 1e-3
-#: A node is in material when at least this many of the six lines through it say so.
+#: A node is in material when it is on at least this many of the six lines through it.
 ENOUGH_VOTES = 3
 
 
@@ -47,12 +47,11 @@ class SurfacePart:
 
 
 class _Lines(NamedTuple):
-    """Lines along an axis, with the flat number of each one's first node and the step to the next."""
+    """Lines along an axis, and the nodes on them."""
 
     direction: int
     column: int
-    stride: int
-    bases: NDArray[np.int64]
+    rows: lattice_kernels.NodeRows
     ends: LineEnds
 
 
@@ -91,7 +90,8 @@ class _Block:
             (float(self.nodes[direction][0]), float(self.nodes[direction][-1])),
         )
         bases = (slices[:, None] * strides[axis] + rows * strides[across]).ravel()
-        return _Lines(direction, column, strides[direction], bases, ends)
+        rows_of = lattice_kernels.NodeRows(bases, strides[direction], self.nodes[direction])
+        return _Lines(direction, column, rows_of, ends)
 
 
 def draw_part(store: SliceStore, grid: PatchGrid, patch: Patch) -> SurfacePart:
@@ -115,8 +115,8 @@ def draw_part(store: SliceStore, grid: PatchGrid, patch: Patch) -> SurfacePart:
 def _inside(block: _Block, found: Iterable[_Lines]) -> NDArray[np.bool_]:
     """Whether each node is in material, by the vote of all lines through it."""
     votes = np.zeros(math.prod(block.shape), dtype=np.uint8)
-    for d, _, stride, bases, ends in found:
-        lattice_kernels.vote(ends.offsets, ends.ends_mm, bases, stride, block.nodes[d], votes)
+    for lines in found:
+        lattice_kernels.vote(lines.ends, lines.rows, votes)
     inside: NDArray[np.bool_] = votes >= ENOUGH_VOTES
     return inside
 
@@ -130,17 +130,17 @@ def _crossings(
 ) -> tuple[FloatArray, FloatArray]:
     """Points and outward unit normals of the crossed edges; without a crossing, the middle and no normal."""
     positions, leans = np.full(len(axes), np.nan), np.full((len(axes), 2), np.nan)
-    for d, column, stride, bases, (offsets, ends, slopes) in found:
-        line = bases, stride, block.nodes[d], MARGIN * float(np.diff(block.nodes[d]).max())
-        lattice_kernels.measure(offsets, ends, slopes, *line, inside, numbers[d], column, positions, leans)
+    for d, column, rows, ends in found:
+        slack = MARGIN * float(np.diff(rows.nodes).max())
+        lattice_kernels.measure(ends, rows, slack, inside, numbers[d], column, positions, leans)
     points, normals = np.empty((len(axes), 3)), np.zeros((len(axes), 3))
     for d in range(3):
         nodes = np.flatnonzero(numbers[d] >= 0)
         mine = numbers[d][nodes]
-        places = np.unravel_index(nodes, block.shape)
+        at = np.unravel_index(nodes, block.shape)
         for axis in range(3):
-            points[mine, axis] = block.nodes[axis][places[axis]]
-        middle = 0.5 * (points[mine, d] + block.nodes[d][places[d] + 1])
+            points[mine, axis] = block.nodes[axis][at[axis]]
+        middle = 0.5 * (points[mine, d] + block.nodes[d][at[d] + 1])
         points[mine, d] = np.where(np.isnan(positions[mine]), middle, positions[mine])
         sense = np.sign(axes[mine]) * ~np.isnan(positions[mine])
         normals[mine, d] = sense
@@ -166,16 +166,19 @@ def _contour(
     first, cases = np.empty(len(inside), dtype=np.int32), np.empty(len(inside), dtype=np.uint8)
     vertices, vertex_normals = np.empty((room, 3)), np.empty((room, 3))
     creased, cells = np.empty(room, dtype=np.bool_), np.empty(room, dtype=np.int64)
-    ramp = math.tan(SMOOTH_RAD) ** 2, SHARP
+    limits = contour_kernels.Limits(math.cos(SMOOTH_RAD), (math.tan(SMOOTH_RAD) ** 2, SHARP), MARGIN)
     n = contour_kernels.place_vertices(
-        *(inside, *block.nodes, numbers, points, normals, _sheets(), math.cos(SMOOTH_RAD), ramp, MARGIN),
-        *(first, cases, vertices, vertex_normals, creased, cells),
+        contour_kernels.Nodes(inside, *block.nodes),
+        contour_kernels.Crossings(numbers, points, normals),
+        _sheets(),
+        limits,
+        contour_kernels.Vertices(first, cases, vertices, vertex_normals, creased, cells),
     )
     quads = np.empty((len(axes), 5), dtype=np.int32)
     quads = quads[: contour_kernels.join_quads(block.shape, own, numbers, axes, _sheets(), first, cases, quads)]
     triangles = np.empty((2 * len(quads), 3), dtype=np.int32)
     contour_kernels.split_quads(quads, vertices, creased, triangles)
-    used, places = np.unique(triangles, return_inverse=True)
+    used, corners = np.unique(triangles, return_inverse=True)
     i, j, k = np.unravel_index(cells[:n] // 4, block.shape)
     names = 4 * np.ravel_multi_index((i + start[0], j + start[1], k), whole) + cells[:n] % 4
     return SurfacePart(
@@ -183,6 +186,6 @@ def _contour(
         normals=vertex_normals[used],
         creased=creased[used],
         names=names[used],
-        triangles=places.reshape(-1, 3).astype(np.int32),
+        triangles=corners.reshape(-1, 3).astype(np.int32),
         leading=np.repeat(normals[quads[:, 4]], 2, axis=0),
     )

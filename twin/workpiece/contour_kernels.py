@@ -7,6 +7,7 @@ has a point and a unit normal that points out of the material, or a normal of ze
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +50,7 @@ def _centre(points: FloatArray, normals: FloatArray, normal: FloatArray) -> None
 
 @njit
 def _along_normal(points: FloatArray, normals: FloatArray, normal: FloatArray, shift: FloatArray) -> float:
-    """The place on the mean normal nearest to the tangent planes; returns the least cosine of a normal to the mean."""
+    """The point on the mean normal nearest to the tangent planes; returns the least cosine of a normal to the mean."""
     smallest, top, bottom = 1.0, 0.0, 0.0
     for i in range(len(normals)):
         along = _dot(normals[i], normal)
@@ -64,7 +65,7 @@ def _along_normal(points: FloatArray, normals: FloatArray, normal: FloatArray, s
 
 @njit
 def _nearest(points: FloatArray, normals: FloatArray, ramp: tuple[float, float], shift: FloatArray) -> None:
-    """The place nearest to the tangent planes in directions that they determine well; the others fade out smoothly.
+    """The point nearest to the tangent planes in directions that they determine well; the others fade out smoothly.
 
     Args:
         ramp: relative eigenvalues of the least squares from which a direction begins to count, and fully does.
@@ -120,46 +121,77 @@ def _case(inside: NDArray[np.bool_], node: int, strides: tuple[int, int, int]) -
     return case
 
 
-@njit
-def place_vertices(
-    inside: NDArray[np.bool_],
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    numbers: NDArray[np.int32],
-    points: FloatArray,
-    normals: FloatArray,
-    sheets: NDArray[np.int8],
-    smooth: float,
-    ramp: tuple[float, float],
-    margin: float,
-    first: NDArray[np.int32],
-    cases: NDArray[np.uint8],
-    vertices: FloatArray,
-    vertex_normals: FloatArray,
-    creased: NDArray[np.bool_],
-    cells: NDArray[np.int64],
-) -> int:
-    """One vertex for every sheet of the surface in every cell: the place nearest to its crossings' tangent planes.
+class Nodes(NamedTuple):
+    """Nodes of a lattice: whether each is in material, shape (nodes,), and their positions along x, y, z, mm."""
 
-    Args:
-        x, y, z: node positions.
-        numbers, points, normals: crossed edges.
-        sheets: shape (256, 12), see `twin.workpiece.cell_cases`.
+    inside: NDArray[np.bool_]
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+
+
+class Crossings(NamedTuple):
+    """Crossed edges.
+
+    Attributes:
+        numbers: shape (3, nodes), number of each edge by axis and lower node, -1 where it is not crossed.
+        points, normals: shape (edges, 3), of each edge that is crossed.
+    """
+
+    numbers: NDArray[np.int32]
+    points: FloatArray
+    normals: FloatArray
+
+
+class Limits(NamedTuple):
+    """How vertices are placed.
+
+    Attributes:
         smooth: cosine of the angle from the mean normal within which a sheet is smooth.
         ramp: see `_nearest`.
         margin: part of a cell's size that vertices keep from its faces, those of a second sheet twice as much and so
             on, so that no two coincide.
-        first, cases: shape (nodes,), filled for cells with a surface: number of the first vertex, and case.
-        vertices, vertex_normals, creased: filled; creased where the surface has an edge or a corner.
-        cells: filled, the cell of each vertex times 4 plus its sheet.
+    """
+
+    smooth: float
+    ramp: tuple[float, float]
+    margin: float
+
+
+class Vertices(NamedTuple):
+    """Vertices of a surface, filled.
+
+    Attributes:
+        first, cases: shape (nodes,), for cells with a surface: number of the first vertex, and case.
+        points, normals: shape (n, 3).
+        creased: shape (n,), whether the surface has an edge or a corner there.
+        cells: shape (n,), the cell of each vertex times 4 plus its sheet.
+    """
+
+    first: NDArray[np.int32]
+    cases: NDArray[np.uint8]
+    points: FloatArray
+    normals: FloatArray
+    creased: NDArray[np.bool_]
+    cells: NDArray[np.int64]
+
+
+@njit
+def place_vertices(
+    nodes: Nodes, crossings: Crossings, sheets: NDArray[np.int8], limits: Limits, vertices: Vertices
+) -> int:
+    """One vertex for every sheet of the surface in every cell: the point nearest to its crossings' tangent planes.
+
+    Args:
+        sheets: shape (256, 12), see `twin.workpiece.cell_cases`.
 
     Returns:
         number of vertices.
     """
+    inside, x, y, z = nodes
+    first, cases, points, normals, creased, cells = vertices
     strides = (len(y) * len(z), len(z), 1)
-    own = np.empty(12, dtype=np.int32)
-    near, leans = np.empty((13, 3)), np.empty((12, 3))
+    own, near, leans = np.empty(12, dtype=np.int32), np.empty((13, 3)), np.empty((12, 3))
     count = 0
     for i in range(len(x) - 1):
         for j in range(len(y) - 1):
@@ -172,23 +204,37 @@ def place_vertices(
                 first[node] = count
                 cases[node] = case
                 for sheet in range(sheets[case].max() + 1):
-                    n = _gather(node, strides, case, sheet, sheets, numbers, own)
+                    n = _gather(node, strides, case, sheet, sheets, crossings.numbers, own)
                     for m in range(n):
-                        near[m] = points[own[m]]
-                        leans[m] = normals[own[m]]
-                    vertex = vertices[count]
-                    _centre(near[: n + 1], leans[:n], vertex_normals[count])
-                    cosine = _along_normal(near[:n], leans[:n], vertex_normals[count], vertex)
-                    creased[count] = cosine < smooth
-                    if creased[count]:
-                        _nearest(near[:n], leans[:n], ramp, vertex)
-                    inset = margin * (1 + sheet)
-                    vertex[0] = _clamped(vertex[0] + near[n, 0], x[i], x[i + 1], inset)
-                    vertex[1] = _clamped(vertex[1] + near[n, 1], y[j], y[j + 1], inset)
-                    vertex[2] = _clamped(vertex[2] + near[n, 2], z[k], z[k + 1], inset)
+                        near[m] = crossings.points[own[m]]
+                        leans[m] = crossings.normals[own[m]]
+                    vertex = points[count]
+                    creased[count] = _place_vertex(near[: n + 1], leans[:n], limits, vertex, normals[count])
+                    inset = limits.margin * (1 + sheet)
+                    vertex[0] = _clamped(vertex[0], x[i], x[i + 1], inset)
+                    vertex[1] = _clamped(vertex[1], y[j], y[j + 1], inset)
+                    vertex[2] = _clamped(vertex[2], z[k], z[k + 1], inset)
                     cells[count] = 4 * node + sheet
                     count += 1
     return count
+
+
+@njit
+def _place_vertex(near: FloatArray, leans: FloatArray, limits: Limits, vertex: FloatArray, normal: FloatArray) -> bool:
+    """Fill the vertex of one sheet and its normal; returns whether the surface has an edge or a corner there.
+
+    Args:
+        near: shape (n + 1, 3), points of the crossings, and a row for their mean.
+        leans: shape (n, 3), normals of the crossings.
+    """
+    n = len(leans)
+    _centre(near, leans, normal)
+    creased = _along_normal(near[:n], leans, normal, vertex) < limits.smooth
+    if creased:
+        _nearest(near[:n], leans, limits.ramp, vertex)
+    for a in range(3):
+        vertex[a] += near[n, a]
+    return creased
 
 
 @njit
@@ -228,8 +274,8 @@ def join_quads(
                         back_q = 1 if corner == 0 or corner == 1 else 0
                         cell = node - back_p * strides[p] - back_q * strides[q]
                         edge = 4 * d + (back_p + 2 * back_q if p < q else back_q + 2 * back_p)
-                        place = corner if axes[number] > 0 else 3 - corner
-                        quads[count, place] = first[cell] + sheets[cases[cell], edge]
+                        position = corner if axes[number] > 0 else 3 - corner
+                        quads[count, position] = first[cell] + sheets[cases[cell], edge]
                     quads[count, 4] = number
                     count += 1
     return count

@@ -1,4 +1,4 @@
-"""What lines through slices say about a lattice: which nodes are in material, where edges are crossed; compiled.
+"""Nodes of a lattice in material and its crossed edges, from lines through slices; compiled.
 
 Lattice arrays are flat: node (i, j, k) of a lattice of (nx, ny, nz) nodes is number (i ny + j) nz + k. A lattice edge
 is named by its axis and its lower node. Crossed edges are numbered.
@@ -7,30 +7,39 @@ is named by its axis and its lower node. Crossed edges are numbered.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.geometry.polygons.line_kernels import LineEnds
 from twin.jit import njit
 
 
+class NodeRows(NamedTuple):
+    """Rows of nodes that lines run along.
+
+    Attributes:
+        bases: shape (n,), number of each line's first node.
+        stride: from the number of a node to that of the next one on its line.
+        nodes: positions of the nodes along the lines, increasing, mm.
+    """
+
+    bases: NDArray[np.int64]
+    stride: int
+    nodes: FloatArray
+
+
 @njit
-def vote(
-    offsets: NDArray[np.int64],
-    ends: FloatArray,
-    bases: NDArray[np.int64],
-    stride: int,
-    nodes: FloatArray,
-    votes: NDArray[np.uint8],
-) -> None:
+def vote(lines: LineEnds, rows: NodeRows, votes: NDArray[np.uint8]) -> None:
     """Add one vote to every node of some lines that lies in material.
 
     Args:
-        offsets, ends: material on each line.
-        bases: shape (n,), each line's first node; the next one is ``stride`` further.
-        nodes: positions of the nodes along the lines, increasing.
+        lines: material on each line.
     """
+    offsets, ends, _ = lines
+    bases, stride, nodes = rows
     for i in range(len(bases)):
         n = 0
         for e in range(offsets[i], offsets[i + 1], 2):
@@ -71,12 +80,8 @@ def number_edges(
 
 @njit
 def measure(
-    offsets: NDArray[np.int64],
-    ends: FloatArray,
-    slopes: FloatArray,
-    bases: NDArray[np.int64],
-    stride: int,
-    nodes: FloatArray,
+    lines: LineEnds,
+    rows: NodeRows,
     slack: float,
     inside: NDArray[np.bool_],
     numbers: NDArray[np.int32],
@@ -87,14 +92,15 @@ def measure(
     """Find the crossing of every numbered edge on some lines: the outermost one of the right sense.
 
     Args:
-        offsets, ends, slopes: material on each line.
-        bases, stride, nodes: as for `vote`.
-        slack: a crossing this much beyond an edge's end still counts, and is moved to the end.
+        lines: material on each line.
+        slack: a crossing this much beyond an edge's end still counts, and is moved to the end, mm.
         numbers: shape (nodes,), of edges along the lines.
         column: of ``leans`` that the slopes go to.
         positions: shape (edges,), NaN until found.
         leans: shape (edges, 2), NaN until found.
     """
+    offsets, ends, slopes = lines
+    bases, stride, nodes = rows
     for i in range(len(bases)):
         first, last = offsets[i], offsets[i + 1]
         e = first

@@ -244,9 +244,13 @@ def quads_of(inside: NDArray[np.bool_]) -> FloatArray:
     x, y, z = (np.arange(float(n)) for n in shape)
     first, cases = np.empty(flat.size, dtype=np.int32), np.empty(flat.size, dtype=np.uint8)
     room = 2 * len(axes)
+    vertices = np.empty((room, 3)), np.empty((room, 3)), np.empty(room, dtype=np.bool_), np.empty(room, dtype=np.int64)
     contour_kernels.place_vertices(
-        *(flat, x, y, z, numbers, points, normals, sheet_table(), 0.99, (0.02, 0.1), 1e-3, first, cases),
-        *(np.empty((room, 3)), np.empty((room, 3)), np.empty(room, dtype=np.bool_), np.empty(room, dtype=np.int64)),
+        contour_kernels.Nodes(flat, x, y, z),
+        contour_kernels.Crossings(numbers, points, normals),
+        sheet_table(),
+        contour_kernels.Limits(0.99, (0.02, 0.1), 1e-3),
+        contour_kernels.Vertices(first, cases, *vertices),
     )
     quads = np.empty((len(axes), 5), dtype=np.int32)
     count = contour_kernels.join_quads(shape, (0, 0), numbers, axes, sheet_table(), first, cases, quads)

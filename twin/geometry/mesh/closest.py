@@ -1,7 +1,7 @@
 """Signed distances from a closed triangle mesh: exact, with the sign from pseudo-normals.
 
-A point's nearest place lies on a face, an edge or a corner. Which side it is on follows from the face's normal, from
-the sum of the normals at the edge, or from the sum weighted by angles at the corner (Baerentzen and Aanaes, 2005).
+The nearest point lies on a face, an edge or a corner. The side follows from the face's normal, from the sum of the
+normals at the edge, or from the sum weighted by angles at the corner (Baerentzen and Aanaes, 2005).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _BITS = 10
 
 
 class Nearest(NamedTuple):
-    """Nearest places on a mesh.
+    """Nearest points on a mesh.
 
     Attributes:
         distance_mm: shape (n,), positive outside.
@@ -42,7 +42,7 @@ class Nearest(NamedTuple):
 
 
 class ClosestPoints:
-    """A closed mesh, ready to be asked.
+    """A closed mesh, ready for queries.
 
     Args:
         vertices_mm: shape (n, 3).
@@ -53,35 +53,33 @@ class ClosestPoints:
     def __init__(self, vertices_mm: FloatArray, triangles: NDArray[np.int64], edges: MeshEdges) -> None:
         corners = vertices_mm[triangles]
         self._order = np.argsort(_morton(corners.mean(axis=1)), kind="stable")
-        self._corners = np.ascontiguousarray(corners[self._order].reshape(-1, 9))
-        self._levels = max(0, math.ceil(math.log2(math.ceil(len(triangles) / _LEAF))))
-        self._boxes = np.empty((2 ** (self._levels + 1) - 1, 6))
-        kernels.fill_boxes(self._corners, _LEAF, self._levels, self._boxes)
+        levels = max(0, math.ceil(math.log2(math.ceil(len(triangles) / _LEAF))))
+        in_order = np.ascontiguousarray(corners[self._order].reshape(-1, 9))
+        self._tree = kernels.Tree(in_order, _LEAF, levels, np.empty((2 ** (levels + 1) - 1, 6)))
+        kernels.fill_boxes(self._tree)
         self._normals = _pseudo_normals(corners, vertices_mm, triangles, edges)
 
     def ask(self, points_mm: FloatArray, threads: int | None = None) -> Nearest:
-        """The nearest places of points, shape (n, 3); best with neighbours one after the other."""
+        """The nearest points of points, shape (n, 3); best with neighbours one after the other."""
         points = np.ascontiguousarray(points_mm, dtype=np.float64)
         count = len(points)
-        places, leaves = np.empty((count, 3)), np.zeros(count, dtype=np.int64)
-        features = np.zeros(count, dtype=np.int8)
-
-        def work(first: int, last: int) -> None:
-            kernels.closest(
-                points, first, last, self._corners, _LEAF, self._levels, self._boxes, places, leaves, features
-            )
-
-        in_parts(work, count, threads=threads, few=_FEW)
-        triangles = self._order[leaves]
-        normals = self._normals[triangles, features]
-        away = points - places
+        found = kernels.Closest(np.empty((count, 3)), np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int8))
+        in_parts(
+            lambda first, last: kernels.closest(points, first, last, self._tree, found),
+            count,
+            threads=threads,
+            few=_FEW,
+        )
+        triangles = self._order[found.triangles]
+        normals = self._normals[triangles, found.features]
+        away = points - found.points
         side = np.einsum("ij,ij->i", away, normals)
         distance = np.copysign(np.linalg.norm(away, axis=1), side)
-        return Nearest(distance, places, normals, triangles)
+        return Nearest(distance, found.points, normals, triangles)
 
 
 def _morton(points: FloatArray) -> NDArray[np.int64]:
-    """Places along a curve that keeps neighbours together."""
+    """Positions along a curve that keeps neighbours together."""
     low, extent = points.min(axis=0), max(float(np.ptp(points, axis=0).max()), 1e-300)
     cells = np.minimum((points - low) / extent * 2**_BITS, 2**_BITS - 1).astype(np.int64)
     codes = np.zeros(len(points), dtype=np.int64)

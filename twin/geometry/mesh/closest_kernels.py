@@ -1,13 +1,13 @@
 """Closest points on triangles by a tree of boxes; compiled.
 
-The tree is complete: node i has the children 2 i + 1 and 2 i + 2, the last level's nodes are leaves of a few triangles
-in a row. ``boxes`` has shape (nodes, 6): low corner, high corner. Closest points: Ericson, Real-Time Collision
-Detection, 2005, section 5.1.5.
+The tree is complete: node i has the children 2 i + 1 and 2 i + 2, the last level's nodes are leaves of a few
+consecutive triangles. Closest points: Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,16 +21,40 @@ _FACE, _AB, _BC, _CA, _A, _B, _C = 0, 1, 2, 3, 4, 5, 6
 _STACK = 96
 
 
-@njit
-def fill_boxes(corners: FloatArray, leaf: int, levels: int, boxes: FloatArray) -> None:
-    """The boxes of a tree, from the leaves up.
+class Tree(NamedTuple):
+    """Triangles in a tree of boxes.
 
-    Args:
+    Attributes:
         corners: shape (m, 9), in the order of the leaves.
         leaf: triangles of a leaf.
         levels: levels above the leaves.
-        boxes: shape (2 ** (levels + 1) - 1, 6), filled; empty leaves have low above high.
+        boxes: shape (2 ** (levels + 1) - 1, 6): low corner, high corner; empty leaves have low above high.
     """
+
+    corners: FloatArray
+    leaf: int
+    levels: int
+    boxes: FloatArray
+
+
+class Closest(NamedTuple):
+    """Closest points.
+
+    Attributes:
+        points: shape (n, 3).
+        triangles: shape (n,), index of the triangle among the leaves.
+        features: shape (n,), feature of it: 0 face, 1 to 3 edges AB, BC, CA, 4 to 6 corners A, B, C.
+    """
+
+    points: FloatArray
+    triangles: NDArray[np.int64]
+    features: NDArray[np.int8]
+
+
+@njit
+def fill_boxes(tree: Tree) -> None:
+    """Fill the boxes of a tree, from the leaves up."""
+    corners, leaf, levels, boxes = tree
     first = 2**levels - 1
     for i in range(2**levels):
         node = first + i
@@ -108,37 +132,25 @@ def _on_triangle(corners: FloatArray, t: int, x: float, y: float, z: float, foun
 
 
 @njit
-def closest(
-    points: FloatArray,
-    first: int,
-    last: int,
-    corners: FloatArray,
-    leaf: int,
-    levels: int,
-    boxes: FloatArray,
-    places: FloatArray,
-    triangles: NDArray[np.int64],
-    features: NDArray[np.int8],
-) -> None:
-    """The closest triangle of some points; each search begins with the last one's triangle.
+def closest(points: FloatArray, first: int, last: int, tree: Tree, found: Closest) -> None:
+    """The closest points on the triangles of some points; each search begins with the triangle found before.
 
     Args:
-        points: shape (n, 3); those from ``first`` to ``last`` are asked.
-        corners, leaf, levels, boxes: the tree, see `fill_boxes`.
-        places: shape (n, 3), filled with the closest points.
-        triangles: shape (n,), filled with the triangle, by its place among the leaves.
-        features: shape (n,), filled with the feature of it: 0 face, 1 to 3 edges AB, BC, CA, 4 to 6 corners A, B, C.
+        points: shape (n, 3); those from ``first`` to ``last`` - 1 are looked up.
+        found: filled for these.
     """
+    corners, leaf, levels, boxes = tree
+    nearest, triangles, features = found
     stack = np.empty(_STACK, dtype=np.int64)
     bounds = np.empty(_STACK)
-    found = np.empty(4)
+    hit = np.empty(4)
     leaves = 2**levels - 1
     guess = 0
     for i in range(first, last):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
-        features[i] = _on_triangle(corners, guess, x, y, z, found)
-        best = found[3]
-        places[i, 0], places[i, 1], places[i, 2] = found[0], found[1], found[2]
+        features[i] = _on_triangle(corners, guess, x, y, z, hit)
+        best = hit[3]
+        nearest[i, 0], nearest[i, 1], nearest[i, 2] = hit[0], hit[1], hit[2]
         triangles[i] = guess
         stack[0] = 0
         bounds[0] = _box_distance2(boxes, 0, x, y, z)
@@ -151,10 +163,10 @@ def closest(
             if node >= leaves:
                 begin = (node - leaves) * leaf
                 for t in range(begin, min(begin + leaf, len(corners))):
-                    feature = _on_triangle(corners, t, x, y, z, found)
-                    if found[3] < best:
-                        best = found[3]
-                        places[i, 0], places[i, 1], places[i, 2] = found[0], found[1], found[2]
+                    feature = _on_triangle(corners, t, x, y, z, hit)
+                    if hit[3] < best:
+                        best = hit[3]
+                        nearest[i, 0], nearest[i, 1], nearest[i, 2] = hit[0], hit[1], hit[2]
                         triangles[i] = t
                         features[i] = feature
                 continue
