@@ -19,7 +19,6 @@ NOT_CLEAN: frozenset[str] = frozenset(
         "README.md",
         "benchmarks/README.md",
         "benchmarks",
-        "docs/accuracy.md",
         "docs/architecture.md",
         "docs/command-line.md",
         "docs/compare.md",
@@ -36,14 +35,9 @@ NOT_CLEAN: frozenset[str] = frozenset(
         "twin/cam",
         "twin/cli",
         "twin/comparison",
-        "twin/cutting",
-        "twin/geometry",
         "twin/identification",
         "twin/job",
         "twin/measured",
-        "twin/motion",
-        "twin/tools",
-        "twin/workpiece",
     }
 )
 

@@ -21,6 +21,14 @@ PYTHON = SOURCES + sorted(
 )
 PAGES = sorted((*ROOT.glob("*.md"), *(p for f in ("docs", "benchmarks", "tests") for p in (ROOT / f).rglob("*.md"))))
 MOST_LINES = 400
+MOST_PARAMETERS = 8
+#: Kernels whose parameters are not yet gathered in named tuples.
+WIDE_KERNELS = {
+    "twin/cam/path/machining_time_kernels.py",
+    "twin/cam/path/tour_kernels.py",
+    "twin/cam/slices/cl_line_kernels.py",
+    "twin/cam/surface/drop_cutter_kernels.py",
+}
 
 #: A name in backticks: words, perhaps joined by dots.
 _QUOTED = re.compile(r"`([^`\n]+)`")
@@ -74,6 +82,18 @@ def test_files_stay_short() -> None:
         name(p): lines for p in PYTHON if not is_kernels(p) and (lines := len(p.read_text().splitlines())) > MOST_LINES
     }
     assert too_long == {}
+
+
+def test_kernels_have_at_most_eight_parameters() -> None:
+    wide = {
+        f"{name(path)}:{node.name}"
+        for path in SOURCES
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.FunctionDef)
+        and any("njit" in ast.unparse(d) for d in node.decorator_list)
+        and len([*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]) > MOST_PARAMETERS
+    }
+    assert {w for w in wide if w.split(":")[0] not in WIDE_KERNELS} == set()
 
 
 def test_numba_has_one_door() -> None:

@@ -1,4 +1,4 @@
-"""What kernels take of a tool's cutting edges and of an engagement map's rows."""
+"""Arrays of a tool's cutting edges and of an engagement map's rows, as kernels take them."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Which parts of the cutting edges are in the material at one position of the tool.
+"""Parts of the cutting edges in the material at a position of the tool.
 
-The front of the tool (n.f > 0) is asked at every angle of a map about the tool axis. A convex tool on a straight motion
+The front of the tool (n.f > 0) is tested at every angle of a map about the axis. A convex tool on a straight motion
 never reaches a front point of its present position before (its earlier positions all lie behind the tangent plane
-there), so points are asked against the workpiece as it was before the motion began: no step's own crescent can be
+there), so points are tested against the workpiece as it was before the motion began: no step's own crescent can be
 missed or counted twice.
 """
 
@@ -39,8 +39,8 @@ class EngagementMap:
     """Engaged shares of the edge elements about the tool axis.
 
     Attributes:
-        share: shape (rows, elements), 0 to 1; row j stands at the angle j 2 pi / rows counter-clockwise from +x.
-            Elements are counted from the lowest; those that lie above the stock are left out.
+        share: shape (rows, elements), 0 to 1; row j is at the angle j 2 pi / rows counter-clockwise from +x.
+            Elements are counted from the lowest; those above the stock are omitted.
         turn: shape (rows, elements), where between row j and the next an element changes from engaged to free or back.
         summary: extent of the engagement.
     """
@@ -66,14 +66,14 @@ class EngagementMaps:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Positions:
-    """Tool positions to be asked together.
+    """Tool positions to be solved together.
 
     Attributes:
         tip_mm: shape (n, 3), tool tips.
         feed: shape (n, 3), unit feed directions.
         feed_mm_s: shape (n,), feeds along the path.
         feed_per_tooth_mm: shape (n,).
-        waiting: shape (n,), how many of the pending sweeps, from the first, came before each position.
+        waiting: shape (n,), number of pending sweeps, from the first, before each position.
     """
 
     tip_mm: FloatArray
@@ -128,7 +128,7 @@ class Engager:
             tip_mm: tool tip, shape (3,).
             feed: unit feed direction, shape (3,).
             workpiece: the material before the present motion, less ``pending``: earlier sweeps that have not been
-                subtracted from its slices yet and are left out exactly.
+                subtracted from its slices yet and are excluded exactly.
         """
         at = Positions(
             tip_mm[None, :],
@@ -154,26 +154,26 @@ class Engager:
     def engage_all(
         self, at: Positions, workpiece: TriSlices, pending: SweptVolume, scratch: Scratch
     ) -> EngagementMaps | None:
-        """The engagement at each of several positions, None where all are in air; several threads may ask at a time.
+        """The engagement at each of several positions, None where all are in air; threads may share it.
 
         Args:
             at: positions for which `prepare` was called, in any order.
-            scratch: memory of the thread that asks. The maps are in it until it is used again.
+            scratch: memory of the calling thread. The maps are in it until it is used again.
         """
         reach = float(workpiece.high_mm[2] - at.tip_mm[:, 2].min())
         if reach <= 0.0:
             return None
         elements = min(len(self._edges.z_mm), int(np.searchsorted(self._edges.z_mm, reach)) + 1)
         status = scratch.array("status", np.int8, len(at), len(self._rows.cos), elements)
-        if not self._ask_front(at, workpiece, pending, status, scratch):
+        if not self._test_front(at, workpiece, pending, status, scratch):
             return None
         share, turn = self._boundaries(at, workpiece, pending, status, scratch)
         return EngagementMaps(share, turn, self._summaries(at, status, share, turn))
 
-    def _ask_front(
+    def _test_front(
         self, at: Positions, workpiece: TriSlices, pending: SweptVolume, status: NDArray[np.int8], scratch: Scratch
     ) -> bool:
-        """Fill the status maps; tells whether any point is engaged."""
+        """Fill the status maps; returns whether any point is engaged."""
         points = scratch.array("points", np.float64, status.size, 3)
         entries = scratch.array("entries", np.int32, status.size)
         count = kernels.front_points(
@@ -202,7 +202,7 @@ class Engager:
         """Which points are in material.
 
         Args:
-            steps: shape (n,), the position that each point belongs to; only looked at where sweeps are pending.
+            steps: shape (n,), the position that each point belongs to; only used where sweeps are pending.
         """
         votes = np.zeros(len(points), dtype=np.int8)
         if len(points):
@@ -228,7 +228,7 @@ class Engager:
         return share, turn
 
     def _along(self, found: NDArray[np.int32], part: FloatArray) -> FloatArray:
-        """Lengths along the meridian, a part of the way from the middle of an element to that of the next."""
+        """Lengths along the meridian, at a fraction between the middles of an element and the next."""
         first = self._middle[found[:, 2]]
         return np.asarray(first + part * (self._middle[found[:, 2] + 1] - first))
 
@@ -271,7 +271,7 @@ class Engager:
 
 
 def _summary(values: list[float], row_rad: float, feed_mm_s: float, feed_per_tooth_mm: float) -> Engagement:
-    """What `kernels.summarise` found, as a record."""
+    """The result of `kernels.summarise` as a record."""
     if values[kernels.ARC] == 0.0:
         return NO_ENGAGEMENT
     return Engagement(
@@ -302,7 +302,7 @@ class Scratch:
         self._arrays: dict[str, NDArray[Any]] = {}
 
     def array(self, name: str, dtype: type[np.generic], *shape: int) -> NDArray[Any]:
-        """An array of that name, type and shape; what is in it is left over from its last use."""
+        """An array of that name, type and shape; it still holds the values of its last use."""
         size = math.prod(shape)
         held = self._arrays.get(name)
         if held is None or held.size < size:

@@ -1,4 +1,4 @@
-"""Work on parts of an array in threads, for kernels that let go of the interpreter."""
+"""Work on parts of an array in threads, for kernels that release the interpreter's lock."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-#: Parts that work is cut into; the same for any number of threads, so that results are the same too.
+#: Parts that work is divided into; the same for any number of threads, so that results are the same too.
 PARTS = 8
-#: Items that are not worth several threads.
+#: Up to this many items, several threads do not pay.
 FEW = 4096
 
 
@@ -22,8 +22,8 @@ def in_parts(
     """Call ``work(first, last)`` for parts of range(count).
 
     Args:
-        threads: how many work, None for all cores.
-        few: so many items stay on one thread.
+        threads: number of threads, None for all cores.
+        few: this many items stay on one thread.
     """
     parts = parts if count > few else 1
     bounds = [count * k // parts for k in range(parts + 1)]

@@ -31,18 +31,18 @@ def moves_from_nc(
 ) -> Iterator[Move | Event]:
     """Turn motions and dwells into moves and pass all other events on.
 
-    The tool tip stands at the controlled point plus the active length offset less the tool's own length: with G43 and
+    The tool tip is at the controlled point plus the active length offset less the tool's own length: with G43 and
     the right offset that is the controlled point itself, without it the tip is lower by the tool's length, as on the
-    machine. Motions of no length are left out.
+    machine. Motions without length are omitted.
 
     Args:
         origin_mm: origin of the workpiece frame in machine coordinates, shape (3,).
         start_mm: gauge point when the program starts, machine coordinates; where a dwell before any motion is.
-        tool_length_mm: gauge length of each tool by number; tools that are missing count as 0.
+        tool_length_mm: gauge length of each tool by number; missing tools count as 0.
         rapid_mm_min: speed of positioning along the path.
 
     Raises:
-        GcodeError: for a motion with an axis besides X, Y and Z away from 0.
+        GcodeError: for a motion with an axis other than X, Y and Z away from 0.
     """
     gauge = np.array(start_mm) - origin_mm
     for event in events:

@@ -59,8 +59,8 @@ class Move:
     def corners_mm(self, step_mm: float, chord_mm: float) -> FloatArray:
         """Points that divide the motion into straight pieces, start and end included, shape (n + 1, 3).
 
-        A straight motion is one piece. An arc's chords are no longer than ``step_mm`` and stand off it by at most
-        ``chord_mm``.
+        A straight motion is one piece. An arc's chords are no longer than ``step_mm`` and deviate from it by at
+        most ``chord_mm``.
         """
         if self.arc is None:
             return np.array([self.start_mm, self.end_mm])

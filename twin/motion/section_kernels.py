@@ -31,9 +31,9 @@ class Planes(NamedTuple):
     Attributes:
         horizontal: whether the tool axis is their normal.
         first_w, pitch, planes: position of the first, their distance, mm, and their number.
-        chord: how far a chord of lo or hi may stand off its curve, mm.
+        chord: how far a chord of lo or hi may deviate from its curve, mm.
         start_is_cut: the body's volume at the start has been cut already. Then nodes where the section is no more than
-            that of the body standing there are not fresh, and no chords are refined between them: they cut nothing new.
+            that of the body there are not fresh, and no chords are refined between them: they cut nothing new.
         top: height above which there is no material; for vertical planes.
     """
 
@@ -68,8 +68,8 @@ class _Node(NamedTuple):
 def section_nodes(body: BodyShape, motion: Motion, planes: Planes, strips: Strips) -> int:
     """Strips of a swept body on consecutive planes.
 
-    Nodes are placed by halving until no chord of lo or hi stands off its curve by more than the chord tolerance, evenly
-    in the angle whose cosine is u, which follows a round section's vertical ends.
+    Intervals are halved until no chord of lo or hi deviates from its curve by more than the chord tolerance, evenly in
+    the angle whose cosine is u, which follows a round section's vertical ends.
 
     Args:
         strips: its arrays are filled.
@@ -212,7 +212,7 @@ def _node_at(body: BodyShape, motion: Motion, planes: Planes, section: _Section,
 
 @njit
 def _is_new(body: BodyShape, motion: Motion, planes: Planes, w: float, u: float, lo: float, hi: float) -> bool:
-    """Whether a section reaches beyond that of the body standing at the start, below the top of the material."""
+    """Whether a section reaches beyond that of the body at rest at the start, below the top of the material."""
     if not lo <= hi:
         return True
     start = Motion(motion.w, 0.0, motion.u, 0.0, motion.v, 0.0)

@@ -32,10 +32,10 @@ class Body:
 
     @classmethod
     def of(cls, shape: ToolShape, *, chord_mm: float = 0.0, above_tip_mm: float = 0.0) -> Body:
-        """A shape standing ``above_tip_mm`` over the tip; with ``chord_mm`` the circumscribed one.
+        """A shape ``above_tip_mm`` above the tip; with ``chord_mm`` the circumscribed one.
 
         The circumscribed corner arc keeps its centre, so its lowest point lies ``chord_mm`` below the tip; sections
-        never reach below the tip's plane all the same.
+        never reach below the tip's plane nevertheless.
         """
         enlarged = shape.circumscribed(chord_mm) if chord_mm > 0.0 else shape
         drop = chord_mm if shape.corner_mm > 0.0 else 0.0
@@ -109,7 +109,7 @@ class Sweep:
         Args:
             axis: 0, 1 or 2, the normal of the planes.
             low_mm, pitch_mm, count: planes at low + (k + 1/2) pitch, k from 0 to count - 1.
-            chord_mm: how far a chord may stand off the curve.
+            chord_mm: how far a chord may deviate from the curve.
             start_is_cut: the volume at the start has been cut already, so that only the part that the motion adds
                 need be right; the rest is marked as not fresh.
             top_mm: height above which there is no material.

@@ -18,7 +18,7 @@ from twin.tools.shape import ToolShape
 class CuttingEdges:
     """Edge elements of a tool with ``n`` elements and ``teeth`` flutes.
 
-    The element ``i`` of tooth ``m`` stands at the angle ``pitch_rad[m] + lag_rad[i]`` behind the tip of tooth 0,
+    The element ``i`` of tooth ``m`` is at the angle ``pitch_rad[m] + lag_rad[i]`` behind the tip of tooth 0,
     against the sense of rotation.
 
     Attributes:
@@ -89,7 +89,7 @@ def cutting_edges(
     Args:
         teeth: number of flutes, at least 1.
         helix_deg: helix angle, right hand positive.
-        pitch_deg: angles from each tooth to the next, summing to 360; None for even teeth.
+        pitch_deg: angles from each tooth to the next, summing to 360; None for constant pitch.
 
     Raises:
         ToolError: values out of range.

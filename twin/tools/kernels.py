@@ -1,4 +1,4 @@
-"""Points of a tool's meridian; compiled, for they are asked for many times at every step."""
+"""Points of a tool's meridian; compiled, because every step needs many of them."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ class ToolShape:
         )
 
     def circumscribed(self, chord_mm: float) -> ToolShape:
-        """The shape enlarged sideways by a chord tolerance; its curves stand off the true ones, its bottom does not.
+        """The shape enlarged sideways by a chord tolerance; its curves are offset outwards, its bottom is not.
 
         The corner arc keeps its centre and grows in radius; what would reach below the tip's plane is cut off there,
         so that floors stay exact.

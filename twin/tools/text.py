@@ -17,21 +17,21 @@ _NEEDS: dict[str, tuple[set[str], set[str]]] = {
 }
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)"
 _TEXT = re.compile(rf"([a-z]+)\s+d?({_NUMBER})((?:\s+(?:rc|[a-z]){_NUMBER}|\s+{_NUMBER}deg)*)", re.IGNORECASE)
-#: Flutes as long as this many diameters, unless told.
+#: Length of the flutes in diameters, where not given.
 _FLUTES = 3.0
 
 
 def parse_tool(text: str, flute_length_mm: float | None = None) -> ToolShape:
-    """The tool that words describe.
+    """The tool that a text describes.
 
     Kind, diameter, then letters with values: ``r`` or ``rc`` corner radius, ``a`` half angle of a taper in degrees
     (or ``5deg``), ``l`` length of the flutes.
 
     Args:
-        flute_length_mm: length of the flutes where the text does not tell it; three diameters if not given.
+        flute_length_mm: length of the flutes where the text does not state it; three diameters if not given.
 
     Raises:
-        ToolError: other words, a letter that the kind does not have or lacks, or a shape that cannot be.
+        ToolError: other words, a letter that the kind does not have or lacks, or an impossible shape.
     """
     match = _TEXT.fullmatch(text.strip())
     kind = match[1].lower() if match else ""

@@ -1,9 +1,9 @@
-"""The 256 ways in which the corners of a cube can lie inside or outside, as tables.
+"""The 256 cases of corners of a cube inside or outside, as tables.
 
 Corner ``c`` lies at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge ``4 d + b`` runs along axis d; bits 0 and 1 of ``b`` are its
-place along the two other axes, in ascending order. The surface in a cube is one or more sheets: every face of the cube
+position along the two other axes, in ascending order. The surface in a cube is one or more sheets: every face of it
 links the crossed edges on its rim two by two, and where all four are crossed the links go round the inside corners.
-Neighbouring cubes thus agree on every face, and a surface with one vertex a sheet is closed.
+Neighbouring cubes thus agree on every face, and a surface with one vertex per sheet is closed.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ class SurfacePart:
     Attributes:
         creased: whether the surface has an edge or a corner at a vertex.
         names: cell and sheet of each vertex in the whole lattice, one number.
-        leading: normal of the crossing that each triangle stands for.
+        leading: normal of the crossing that each triangle belongs to.
     """
 
     vertices: FloatArray
@@ -73,7 +73,7 @@ class _Block:
         return len(self.nodes[0]), len(self.nodes[1]), len(self.nodes[2])
 
     def lines(self, direction: int, column: int) -> _Lines:
-        """All lines along an axis as one of the two families of slices that hold them sees them.
+        """All lines along an axis in one of the two families of slices that contain them.
 
         Args:
             column: 0 or 1: the family whose slopes are along the first or the second other axis.

@@ -110,9 +110,9 @@ def solid(corners_mm: ArrayLike, name: str) -> Solid:
         raise MeshError(f"{name}: holds no triangles; expected a closed surface")
     if not np.isfinite(corners).all():
         bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
-        raise MeshError(f"{name}: triangle {bad[0] + 1} of {len(corners)} has a corner that is no finite number")
-    vertices, places = weld(corners.reshape(-1, 3))
-    triangles = places.reshape(-1, 3)
+        raise MeshError(f"{name}: triangle {bad[0] + 1} of {len(corners)} has a corner that is not a finite number")
+    vertices, numbers = weld(corners.reshape(-1, 3))
+    triangles = numbers.reshape(-1, 3)
     i, j, k = triangles.T
     whole = (i != j) & (j != k) & (k != i)
     if not whole.any():
@@ -197,24 +197,25 @@ def _ascii_corners(name: str, data: bytes) -> FloatArray:
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="stl", process=False)
         corners: FloatArray = np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)]
     except Exception as error:  # trimesh and its helpers raise many kinds
-        raise MeshError(f"{name}: cannot be read as STL; expected a whole binary or ASCII STL file") from error
+        raise MeshError(f"{name}: cannot be read as STL; expected a complete binary or ASCII STL file") from error
     begun = len(re.findall(rb"(?i)\bfacet\s+normal\b", data))
     if begun != len(corners):
-        raise MeshError(f"{name}: is no whole STL file: {begun} facets begin, {len(corners)} can be read")
+        raise MeshError(f"{name}: is not a complete STL file: {begun} facets begin, {len(corners)} can be read")
     return corners
 
 
 def _check_binary_length(name: str, data: bytes) -> None:
-    """A binary STL says how many triangles follow its header.
+    """A binary STL states the number of triangles after its header.
 
     Raises:
         MeshError: the file's length does not fit.
     """
     if len(data) < _BINARY_HEADER:
-        raise MeshError(f"{name}: is no STL file: {len(data)} bytes; expected at least {_BINARY_HEADER}")
+        raise MeshError(f"{name}: is not an STL file: {len(data)} bytes; expected at least {_BINARY_HEADER}")
     count = int.from_bytes(data[_BINARY_HEADER - 4 : _BINARY_HEADER], "little")
     wanted = _BINARY_HEADER + _BINARY_TRIANGLE * count
     if len(data) != wanted:
         raise MeshError(
-            f"{name}: is no STL file: {len(data)} bytes; expected {wanted} for {count} triangles, as its header says"
+            f"{name}: is not an STL file: {len(data)} bytes; "
+            f"expected {wanted} for {count} triangles, as its header states"
         )

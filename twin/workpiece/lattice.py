@@ -14,7 +14,7 @@ from twin.arrays import FloatArray
 from twin.errors import StockError
 from twin.workpiece.store import SliceStore
 
-#: Without a pitch asked for, the longest side of the stock has this many cells.
+#: Where no pitch is given, the longest side of the stock has this many cells.
 CELLS_ALONG = 200
 
 

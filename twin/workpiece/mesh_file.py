@@ -16,7 +16,7 @@ _WRITERS: dict[str, Callable[[ArrayLike, ArrayLike], bytes]] = {".stl": stl_byte
 
 
 def check_mesh_path(path: Path | str, *, force: bool = False) -> Path:
-    """Whether a mesh can be written there; to be asked before long work.
+    """Check that a mesh can be written there, before long work.
 
     Args:
         force: whether a file that is there may be replaced.

@@ -18,10 +18,10 @@ _ORDER = (0, 1, 2)
 
 
 class Removal:
-    """Subtracts sweeps from a workpiece, the three families side by side in threads.
+    """Subtracts sweeps from a workpiece, the three families in parallel threads.
 
-    Every family's planes are worked on by one thread only and in one order, so results do not depend on how many
-    threads there are.
+    Every family's planes are cut by one thread only and in one order, so results do not depend on the number of
+    threads.
     """
 
     def __init__(self, workpiece: TriSlices, chord_mm: float, threads: int = 2) -> None:
@@ -34,7 +34,7 @@ class Removal:
         """Take a sweep's volume out of the workpiece (or only measure it with ``apply=False``).
 
         Returns:
-            Removed volume in mm3: the mean of what the three families say, each by the midpoint rule.
+            Removed volume in mm3: the mean of the three families, each by the midpoint rule.
         """
         return float(self.cut_all([sweep], apply=apply)[0])
 
@@ -72,7 +72,7 @@ class Removal:
         return float(np.sum(piece.cut(axis, strips, apply=apply)) * pitch)
 
     def close(self) -> None:
-        """Let the threads go."""
+        """Stop the threads."""
         if self._pool is not None:
             self._pool.shutdown()
 

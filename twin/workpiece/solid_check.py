@@ -1,4 +1,4 @@
-"""Whether a triangle mesh is a solid, and where it is not."""
+"""Checks that a triangle mesh is a closed solid, with the positions where it is not."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from twin.arrays import FloatArray
 from twin.errors import MeshError
 from twin.geometry.mesh.slicing import MeshEdges
 
-#: How many places a message names.
+#: Number of positions that a message names.
 _NAMED = 3
 
 
 def check_closed(name: str, vertices_mm: FloatArray, edges: MeshEdges) -> None:
-    """Every edge must be run along as often one way as the other.
+    """Every edge must be used as often in one direction as in the other.
 
     Raises:
         MeshError: open edges, or triangles turned unlike their neighbours.
@@ -29,14 +29,14 @@ def check_closed(name: str, vertices_mm: FloatArray, edges: MeshEdges) -> None:
         holes, span = _holes(vertices_mm, ends)
         raise MeshError(
             f"{name}: the surface leaks: {_count(len(ends), 'open edge')} around {_count(holes, 'hole')}, "
-            f"the largest {span:.5g} mm wide: {_places(vertices_mm, ends)}; expected a closed surface"
+            f"the largest {span:.5g} mm wide: {_positions(vertices_mm, ends)}; expected a closed surface"
         )
     turned = edges.forward != edges.backward
     if turned.any():
         ends = edges.ends[turned]
         raise MeshError(
             f"{name}: triangles are turned unlike their neighbours along {_count(len(ends), 'edge')}: "
-            f"{_places(vertices_mm, ends)}; expected all counter-clockwise seen from outside"
+            f"{_positions(vertices_mm, ends)}; expected all counter-clockwise seen from outside"
         )
 
 
@@ -84,8 +84,8 @@ def _bodies(count: int, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _holes(vertices_mm: FloatArray, ends: NDArray[np.int64]) -> tuple[int, float]:
     """How many connected runs open edges make, and the diagonal of the largest one's box."""
-    used, places = np.unique(ends, return_inverse=True)
-    pairs = places.reshape(-1, 2)
+    used, indices = np.unique(ends, return_inverse=True)
+    pairs = indices.reshape(-1, 2)
     graph = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(used),) * 2)
     holes, labels = connected_components(graph, directed=False)
     points = vertices_mm[used]
@@ -93,7 +93,7 @@ def _holes(vertices_mm: FloatArray, ends: NDArray[np.int64]) -> tuple[int, float
     return int(holes), max(spans)
 
 
-def _places(vertices_mm: FloatArray, ends: NDArray[np.int64]) -> str:
+def _positions(vertices_mm: FloatArray, ends: NDArray[np.int64]) -> str:
     named = [f"{_point(vertices_mm[a])} to {_point(vertices_mm[b])}" for a, b in ends[:_NAMED]]
     return ", ".join(named) + (", ..." if len(ends) > _NAMED else "")
 

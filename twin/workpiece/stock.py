@@ -15,7 +15,7 @@ from twin.geometry.polygons.region import Region
 from twin.workpiece.store import PLANE_AXES
 
 AXIS_NAMES = "xyz"
-#: How far the polygon of a cylinder's section may stand off the circle, unless told otherwise.
+#: How far the polygon of a cylinder's section may deviate from the circle, where not given.
 CHORD_MM = 0.001
 #: More planes than this in one family are taken for a mistake in the pitch.
 MOST_PLANES = 1_000_000
@@ -118,7 +118,7 @@ def cylinder_slices(
         axis: ``"x"``, ``"y"`` or ``"z"``.
         low_mm, high_mm: ends along the axis.
         pitch_mm: largest distance of the planes.
-        chord_mm: distance of the polygon's chords from the arcs they stand for.
+        chord_mm: distance of the polygon's chords from their arcs.
 
     Raises:
         StockError: an axis, a cylinder or a pitch that cannot be.
@@ -148,7 +148,7 @@ def circle_polygon(radius_mm: float, chord_mm: float) -> FloatArray:
     """A regular polygon of a circle's area about the origin, its sides square to the axes u and v.
 
     Args:
-        chord_mm: largest distance of a side from the arc it stands for.
+        chord_mm: largest distance of a side from its arc.
 
     Returns:
         shape (4 n, 2), counter-clockwise.

@@ -1,4 +1,4 @@
-"""The small interface that every store of slices implements: the fast one and the reference one.
+"""The interface of every store of slices: the fast one and the reference one.
 
 The workpiece is three families of parallel planes. Family ``axis`` (0 for x, 1 for y, 2 for z) has ``count(axis)``
 planes at ``position(axis, k) = low[axis] + (k + 1/2) * pitch[axis]``. In-plane coordinates (u, v):
@@ -28,7 +28,7 @@ PLANE_AXES: tuple[tuple[int, int], ...] = ((1, 2), (0, 2), (0, 1))
 
 
 class SliceStore(Protocol):
-    """Slices in three directions that can be cut and asked."""
+    """Slices in three directions that can be cut and queried."""
 
     @property
     def low_mm(self) -> FloatArray:
@@ -60,7 +60,7 @@ class SliceStore(Protocol):
             planes: numbers of the slices.
             fixed: in-plane coordinate that is constant on a line, 0 for u, 1 for v.
             at_mm: shape (n,), that coordinate for each line.
-            window_mm: only this range of the other coordinate is wanted; ends outside of it may be anything.
+            window_mm: only ends in this range of the other coordinate are needed; others are undefined.
 
         Returns:
             all lines of the first slice, then those of the second, ...

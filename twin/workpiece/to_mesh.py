@@ -1,11 +1,11 @@
 """The surface of the machined part as triangles, from its slices.
 
-Nodes of a lattice lie where slices of all three families meet. The slices tell which nodes are in material, where the
-surface crosses the lattice's edges, and how it leans there. Every cell with a surface gets a vertex nearest to the
+Nodes of a lattice lie where slices of all three families meet. The slices determine which nodes are in material, where
+the surface crosses the lattice's edges, and its slope there. Every cell with a surface gets a vertex nearest to the
 tangent planes at its crossings (dual contouring: Ju, Losasso, Schaefer and Warren, 2002), one for each sheet of the
 surface (Nielson's dual marching cubes, 2004), so flat faces come out flat, edges sharp, and the whole closed: every
-edge is run through as often one way as the other, though sheets that touch may share one. Details thinner than a
-cell may be lost.
+edge is used as often in one direction as in the other, though sheets that touch may share one. Details thinner than
+a cell may be lost.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class SurfaceMesh(NamedTuple):
 
 
 def surface_mesh(store: SliceStore, pitch_mm: float | None = None) -> SurfaceMesh:
-    """The whole surface as one closed mesh, no two vertices at one place.
+    """The whole surface as one closed mesh, no two vertices at one point.
 
     Args:
         pitch_mm: largest distance of the lattice's nodes; None for 200 cells along the longest side.
@@ -52,9 +52,9 @@ def surface_mesh(store: SliceStore, pitch_mm: float | None = None) -> SurfaceMes
     grid = patch_grid(store, pitch_mm=pitch_mm, size=WHOLE_CELLS)
     parts = [draw_part(store, grid, patch) for patch in grid.patches]
     names = np.concatenate([p.names for p in parts])
-    _, where, places = np.unique(names, return_index=True, return_inverse=True)
+    _, where, corners = np.unique(names, return_index=True, return_inverse=True)
     firsts = np.concatenate(([0], np.cumsum([len(p.names) for p in parts])))
-    triangles = [places[p.triangles + f] for p, f in zip(parts, firsts, strict=False)]
+    triangles = [corners[p.triangles + f] for p, f in zip(parts, firsts, strict=False)]
     vertices = np.concatenate([p.vertices for p in parts])[where]
     normals = np.concatenate([p.normals for p in parts])[where]
     return SurfaceMesh(vertices, normals, np.concatenate(triangles).reshape(-1, 3).astype(np.int64))
@@ -86,18 +86,18 @@ def patch_mesh(store: SliceStore, grid: PatchGrid, patch: Patch, t_s: float = 0.
     vertices = np.concatenate((part.vertices, part.vertices[triangles[extra]]))
     normals = np.concatenate((part.normals, own))
     triangles[extra] = len(part.vertices) + np.arange(len(extra))
-    used, places = np.unique(triangles, return_inverse=True)
+    used, corners = np.unique(triangles, return_inverse=True)
     return WorkpiecePatch(
         t_s=t_s,
         patch=patch.name,
         vertices_mm=vertices[used].astype(np.float32),
         normals=normals[used].astype(np.float32),
-        triangles=places.reshape(-1, 3).astype(np.uint32),
+        triangles=corners.reshape(-1, 3).astype(np.uint32),
     )
 
 
 def _face_normals(part: SurfacePart) -> FloatArray:
-    """Unit normals of triangles; that of the crossing where a triangle is too thin to tell."""
+    """Unit normals of triangles; that of the crossing where a triangle is too thin for one of its own."""
     a, b, c = (part.vertices[part.triangles[:, i]] for i in range(3))
     cross = np.cross(b - a, c - a)
     length = np.linalg.norm(cross, axis=1, keepdims=True)

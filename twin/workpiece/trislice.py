@@ -26,7 +26,7 @@ LEAST_MM2, LEAST_SHARE = 1e-6, 1e-9
 
 
 class TriSlices(ABC):
-    """What both stores share: the planes, areas and volumes."""
+    """The common part of both stores: planes, areas and volumes."""
 
     def __init__(self, slices: SliceSet) -> None:
         self.slices = slices
@@ -96,7 +96,7 @@ class TriSlices(ABC):
 
     @abstractmethod
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
-        """Make the planes inside a box ready to be asked for points."""
+        """Build the planes inside a box, before points are tested."""
 
     def area_mm2(self, axis: int, k: int) -> float:
         """Area of material on one plane."""
@@ -163,9 +163,9 @@ class CellSlices(TriSlices):
             family.ensure(first, last + 1)
 
     def count_votes(self, points_mm: FloatArray, enough: int, votes: NDArray[np.int8]) -> None:
-        """See `TriSlices.count_votes`; at most as many families are asked as it takes to decide."""
-        for asked, axis in enumerate((0, 1, 2)):
-            self._vote(points_mm, axis, enough - (3 - asked), enough - 1, votes)
+        """See `TriSlices.count_votes`; no more families are tested than it takes to decide."""
+        for tested, axis in enumerate((0, 1, 2)):
+            self._vote(points_mm, axis, enough - (3 - tested), enough - 1, votes)
 
     def _vote(self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]) -> None:
         planes = Planes(axis, *PLANE_AXES[axis], float(self.low_mm[axis]), float(self.pitch_mm[axis]))

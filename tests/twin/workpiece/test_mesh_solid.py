@@ -115,7 +115,7 @@ def test_what_encloses_nothing_is_refused(corners: FloatArray, message: str) -> 
 def test_a_corner_that_is_no_number_is_named() -> None:
     corners = cube()
     corners[4, 1, 2] = np.nan
-    assert refusal(corners) == "part.stl: triangle 5 of 12 has a corner that is no finite number"
+    assert refusal(corners) == "part.stl: triangle 5 of 12 has a corner that is not a finite number"
 
 
 def test_files_that_are_no_stl_are_refused(tmp_path: Path) -> None:
@@ -126,7 +126,7 @@ def test_files_that_are_no_stl_are_refused(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match=r"part\.stl: is empty; expected an STL file$"):
         load_mesh(path)
     path.write_bytes(b"hello")
-    with pytest.raises(MeshError, match=r"part\.stl: is no STL file: 5 bytes; expected at least 84$"):
+    with pytest.raises(MeshError, match=r"part\.stl: is not an STL file: 5 bytes; expected at least 84$"):
         load_mesh(path)
     path.write_bytes(b"solid nothing\nendsolid nothing\n")
     with pytest.raises(MeshError, match=r"holds no triangles; expected binary or ASCII STL with a closed surface$"):
@@ -136,7 +136,7 @@ def test_files_that_are_no_stl_are_refused(tmp_path: Path) -> None:
 def test_a_binary_file_that_was_cut_off_is_refused(tmp_path: Path) -> None:
     path = stl(tmp_path / "part.stl", cube())
     path.write_bytes(path.read_bytes()[:-70])
-    message = r"is no STL file: 614 bytes; expected 684 for 12 triangles, as its header says$"
+    message = r"is not an STL file: 614 bytes; expected 684 for 12 triangles, as its header states$"
     with pytest.raises(MeshError, match=message):
         load_mesh(path)
 
@@ -158,7 +158,7 @@ def test_an_ascii_file_that_was_cut_off_is_refused_with_what_can_be_read(tmp_pat
     path = stl(tmp_path / "part.stl", cube(), ascii_text=True)
     whole = path.read_bytes()
     path.write_bytes(whole + b"\n" + whole[: len(whole) // 2])
-    with pytest.raises(MeshError, match=r"part\.stl: is no whole STL file: \d+ facets begin, \d+ can be read$"):
+    with pytest.raises(MeshError, match=r"part\.stl: is not a complete STL file: \d+ facets begin, \d+ can be read$"):
         load_mesh(path)
     path.write_bytes(whole + b"\n" + whole.replace(b"vertex", b"vertex  "))
     assert len(load_mesh(path).triangles) == 24

@@ -1,1 +1,1 @@
-"""Polygons on parallel planes as column cells: cut, filled, asked."""
+"""Polygons on parallel planes as column cells: filling, cutting, queries."""

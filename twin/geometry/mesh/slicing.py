@@ -76,7 +76,7 @@ def mesh_sections(
         planes_mm: shape (k,), positions along the normal axis, increasing.
 
     Returns:
-        One region a plane, vertices rounded to 1e-5 mm.
+        One region per plane, vertices rounded to 1e-5 mm.
     """
     heights = np.ascontiguousarray(vertices_mm[:, axes[0]])
     ranges = np.empty((len(triangles), 2), dtype=np.int64)

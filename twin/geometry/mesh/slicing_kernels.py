@@ -182,7 +182,7 @@ def chain_rings(
         order: shape (s,), filled with segments, ring by ring, plane by plane.
 
     Returns:
-        rows (plane, first, one past the last place in ``order``), one a ring.
+        rows (plane, first, one past the last entry in ``order``), one per ring.
     """
     rings = np.empty((len(segments) // 2 + 1, 3), dtype=np.int64)
     head = np.full(edges, -1, dtype=np.int64)

@@ -16,9 +16,9 @@ Paths: TypeAlias = list[list[list[int]]]
 
 #: Integer units per mm: 1e-7 mm a unit keeps coordinates up to 4e11 mm inside pyclipper's range of +-4e18.
 UNITS_PER_MM = 1e7
-#: Vertices of regions handed out are rounded to this many decimals of a mm (the tri-slice paper, section 2.1).
+#: Vertices of resulting regions are rounded to this many decimals of a mm (the tri-slice paper, section 2.1).
 DECIMALS = 5
-#: Rings below this area are leftovers of rounding.
+#: Rings below this area result from rounding.
 LEAST_AREA_MM2 = 1e-9
 
 
@@ -39,7 +39,7 @@ def to_region(paths: Paths) -> Region:
 
 
 def difference(subject: Paths, clips: Paths) -> Paths:
-    """What is left of a set of paths when others are taken out (even-odd subject, non-zero clips)."""
+    """A set of paths without others (even-odd subject, non-zero clips)."""
     if not subject:
         return []
     clipper = pyclipper.Pyclipper()

@@ -27,7 +27,7 @@ Radii: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
 def arc_segments(radius_mm: float, chord_mm: float) -> int:
-    """Segments that a quarter circle needs for no chord to stand further inside of it than ``chord_mm``."""
+    """Segments of a quarter circle for which no chord deviates inwards by more than ``chord_mm``."""
     half = math.acos(max(0.0, 1.0 - chord_mm / radius_mm))
     return max(2, math.ceil(0.25 * math.pi / half))
 
@@ -35,7 +35,7 @@ def arc_segments(radius_mm: float, chord_mm: float) -> int:
 class Convolution:
     """Sections ready to be inflated by the radius that belongs to their distance, and united (eq. 1).
 
-    Sections that a neighbour makes needless are left out, see `margins`: that changes nothing but the places of chords.
+    Sections made redundant by a neighbour are omitted, see `margins`: that changes only the positions of chords.
     """
 
     def __init__(
@@ -56,17 +56,17 @@ class Convolution:
             positions_mm: shape (n,).
             radii: from heights above a plane to radii, NaN out of reach.
             radius_mm: the largest of these.
-            chord_mm: how far chords of the largest arcs may stand inside.
+            chord_mm: inward deviation allowed for chords of the largest arcs.
             threads: threads to work with, all cores if None.
-            edges: the sections' boundaries, where these are less than the polygons': without a frame that stands for
-                everything around.
+            edges: the sections' boundaries, where these are less than the polygons': without a frame that represents
+                the surroundings.
         """
         shapes = guarded(shapes, radius_mm)
         self._shapes, self._positions, self._radii = shapes, positions_mm, radii
         self._segments = arc_segments(radius_mm, chord_mm)
         self._threads = threads
         self._some = ~shapely.is_empty(shapes)
-        shapely.bounds(shapes)  # boxes are kept when first asked for, which threads must not do side by side
+        shapely.bounds(shapes)  # boxes are cached at the first call, which threads must not do concurrently
         self._up, self._down = margins(shapes, shapely.boundary(shapes) if edges is None else edges, threads)
 
     def on(self, planes_mm: FloatArray) -> Shapes:
@@ -82,12 +82,12 @@ class Convolution:
 
 
 def margins(shapes: Shapes, edges: Shapes, threads: int | None) -> tuple[FloatArray, FloatArray]:
-    """By how much sections lie inside of their neighbours, or stand out of them.
+    """By how much sections lie inside their neighbours, or protrude from them.
 
     A section inflated by r lies inside of its neighbour inflated by q as soon as r - q is not above the margin: where
-    the section is inside, the margin is its distance from the neighbour's boundary; where it stands out, minus the
+    the section is inside, the margin is its distance from the neighbour's boundary; where it protrudes, minus the
     radius that the neighbour must be inflated by to hold it, found by trying, up to a tenth too large. Sections at
-    jumps are not left out: there is no such radius, or a large one.
+    jumps are not omitted: there is no such radius, or a large one.
 
     Returns:
         margins of each section in the next, and of each in the last one before it; -inf where there is none.
@@ -101,8 +101,8 @@ def margins(shapes: Shapes, edges: Shapes, threads: int | None) -> tuple[FloatAr
         own, lines = _copies(shapes[first : last + 1]), _copies(edges[first : last + 1])
         shapely.prepare(own)
         apart = np.where(same, 0.0, np.nan_to_num(shapely.distance(lines[:-1], lines[1:]), nan=0.0))
-        up[first:last] = _margins_one_way(own[:-1], own[1:], same, apart)
-        down[first + 1 : last + 1] = _margins_one_way(own[1:], own[:-1], same, apart)
+        up[first:last] = _margins_in(own[:-1], own[1:], same, apart)
+        down[first + 1 : last + 1] = _margins_in(own[1:], own[:-1], same, apart)
 
     run_all([partial(some, first) for first in range(0, len(shapes) - 1, _PAIRS)], threads)
     return up, down
@@ -113,7 +113,7 @@ def _copies(shapes: Shapes) -> Shapes:
     return np.asarray(shapely.from_wkb(shapely.to_wkb(shapes)), dtype=object)
 
 
-def _margins_one_way(shapes: Shapes, others: Shapes, same: NDArray[np.bool_], apart: FloatArray) -> FloatArray:
+def _margins_in(shapes: Shapes, others: Shapes, same: NDArray[np.bool_], apart: FloatArray) -> FloatArray:
     found = np.full(len(shapes), -np.inf)
     inside = same | shapely.covers(others, shapes)
     found[inside] = apart[inside]
@@ -141,7 +141,7 @@ def _holding(shapes: Shapes, others: Shapes, apart: FloatArray) -> FloatArray:
 
 
 def needed(radius_mm: FloatArray, up: FloatArray, down: FloatArray) -> NDArray[np.bool_]:
-    """Sections within reach that no neighbour makes needless; of two that are alike the first is kept.
+    """Sections within reach that no neighbour makes redundant; of two equal ones the first is kept.
 
     Args:
         radius_mm: radius of each section, NaN out of reach.

@@ -1,4 +1,4 @@
-"""Corners of polygons, and how far they wander from one plane to the next."""
+"""Corners of polygons, and how far they move from one plane to the next."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from scipy.spatial import cKDTree
 from twin.arrays import FloatArray
 from twin.geometry.polygons.shapes import Shape, outline_rings
 
-#: A corner turns by at least this; what it is matched with may turn by as little as the second.
+#: A corner turns by at least the first; the corner that it is matched with may turn by as little as the second.
 _SHARP, _WEAK = math.radians(8.0), math.radians(4.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Corners:
-    """Corners that stand out of a polygon.
+    """Convex corners of a polygon.
 
     Attributes:
         sharp_mm: shape (n, 2), those that turn by 8 degrees and more.
@@ -35,7 +35,7 @@ class Corners:
         """Corners of a polygon.
 
         Args:
-            within_mm: steps and rings smaller than this are no corners and no rings.
+            within_mm: steps and rings smaller than this are ignored.
         """
         rings = outline_rings(shapely.simplify(shape, within_mm, preserve_topology=False))
         empty = (np.empty((0, 2)), np.empty(0))

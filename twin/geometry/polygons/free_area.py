@@ -1,4 +1,4 @@
-"""Areas where a tool's axis may be, asked often: whether they hold a line, their offsets, their parts."""
+"""Areas that a tool's axis may enter: whether they contain a line, their offsets, their parts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SLACK = 5.0 * 10.0**-DECIMALS
 
 
 class FreeArea:
-    """An area made ready for many questions.
+    """An area prepared for many queries.
 
     Args:
         area: polygon or multipolygon, mm.
@@ -29,7 +29,7 @@ class FreeArea:
 
     @property
     def empty(self) -> bool:
-        """Whether nothing is in it."""
+        """Whether the area is empty."""
         return bool(shapely.is_empty(self.area))
 
     def holds(self, line_mm: FloatArray) -> bool:
@@ -47,12 +47,12 @@ def united(areas: Sequence[Area]) -> Area:
 
 
 def shrunk(area: Area, by_mm: float, chord_mm: float) -> list[Area]:
-    """The connected parts of what is left of an area a distance inside its border."""
+    """The connected parts of an area offset inwards by a distance."""
     return pieces(shapely.simplify(grown(area, -by_mm, chord_mm), 0.5 * chord_mm))
 
 
 def simplified(area: Area, by_mm: float) -> Area:
-    """An area with fewer vertices, its border moved by so much at most."""
+    """An area with fewer vertices, its border moved by this distance at most."""
     return shapely.simplify(area, by_mm)
 
 
@@ -80,7 +80,7 @@ def has_point(polygon: Area, point_mm: FloatArray) -> bool:
 
 
 def rows_of(free: FreeArea, spacing_mm: float) -> Iterator[list[FloatArray]]:
-    """What of lines along x lies in a free area: for each row, from low y to high, its pieces from left to right."""
+    """Parts of lines along x in a free area: for each row, from low y to high, its pieces from left to right."""
     if free.empty:
         return
     x0, y0, x1, y1 = shapely.bounds(free.area).tolist()

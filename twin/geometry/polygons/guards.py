@@ -1,10 +1,10 @@
-"""Polygons made ready for GEOS to inflate them.
+"""Polygons prepared for inflation by GEOS.
 
-Before it inflates a polygon, GEOS leaves out vertices of shallow concave corners whose edge before them is shorter than
-one hundredth of the radius. Beside a long edge that tilts the whole edge: half a micrometre for a ball of 4 mm on the
+Before it inflates a polygon, GEOS omits vertices of shallow concave corners whose edge before them is shorter than
+one hundredth of the radius. Next to a long edge that tilts the whole edge: half a micrometre for a ball of 4 mm on the
 plate of a small part, up to a hundredth of the radius at worst. A vertex on the long edge, close to its end, keeps the
 tilt within that end. Arcs of short edges are not guarded: there the edges that GEOS makes are at most two hundredths of
-the radius r long, and stand out by (r / 50)^2 / (8 r), 5e-5 r.
+the radius r long, and deviate outwards by (r / 50)^2 / (8 r), 5e-5 r.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import shapely
 from twin.arrays import FloatArray
 from twin.geometry.polygons.shapes import Shape, Shapes
 
-#: Edges shorter than this part of the radius may be left out; a little above what GEOS takes.
+#: Edges shorter than this part of the radius may be omitted; a little above GEOS's own limit.
 _SHORT = 0.0125
 #: Edges from this many such lengths get vertices close to their ends.
 _LONG = 10.0
@@ -50,7 +50,7 @@ def _guarded(shape: Shape, short_mm: float) -> Shape:
 
 
 def _with_vertices(ring: FloatArray, short_mm: float) -> FloatArray | None:
-    """A closed ring with vertices on long edges beside short ones; None where there are none."""
+    """A closed ring with vertices on long edges next to short ones; None where there are none."""
     along = np.diff(ring, axis=0)
     size = np.hypot(along[:, 0], along[:, 1])
     long, short = size > _LONG * short_mm, size < short_mm

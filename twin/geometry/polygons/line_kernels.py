@@ -1,7 +1,7 @@
 """Where lines along u or v enter and leave the material of a plane, and the slope of the boundary there; compiled.
 
-Ends come in pairs: material from the first to the second, from the third to the fourth, and so on. Two ends that are
-no further apart than ``merge`` cancel, be it a sliver or a slit. ``slopes`` hold the boundary's d(end) / d(line
+Ends come in pairs: material from the first to the second, from the third to the fourth, and so on. Two ends at
+most ``merge`` apart cancel, for a sliver as for a slit. ``slopes`` hold the boundary's d(end) / d(line
 position). A line at ``at`` is met by an edge that has one end at most ``at`` and the other above it.
 """
 

@@ -15,7 +15,7 @@ from twin.geometry.polygons.clip import DECIMALS
 #: A shapely polygon or multipolygon.
 Area: TypeAlias = Any
 
-#: Areas and lines smaller than this are leftovers of rounding, mm2 and mm.
+#: Areas and lines smaller than this result from rounding, mm2 and mm.
 _LEAST = 1e-6
 
 
@@ -25,7 +25,7 @@ def box_area(low_mm: Sequence[float], high_mm: Sequence[float]) -> Area:
 
 
 def grown(area: Area, by_mm: float, chord_mm: float) -> Area:
-    """An area with all within a distance of it, outside arcs as chords that stand off by so much at most, outwards."""
+    """An area offset outwards by a distance; arcs become chords that deviate outwards by ``chord_mm`` at most."""
     if by_mm == 0.0:
         return area
     if by_mm < 0.0:
@@ -62,7 +62,7 @@ def _inside(ring: Any, window: Area) -> list[FloatArray]:
 
 
 def minus(area: Area, other: Area) -> Area:
-    """What of an area is not in another."""
+    """The part of an area that is not in another."""
     return shapely.difference(area, other)
 
 
@@ -72,7 +72,7 @@ def pieces(area: Area) -> list[Area]:
 
 
 def holds(area: Area, line: FloatArray) -> bool:
-    """Whether an area holds a whole line, shape (n >= 2, 2); its boundary belongs to it, within rounding."""
+    """Whether an area contains a whole line, shape (n >= 2, 2); its boundary belongs to it, within rounding."""
     return bool(shapely.buffer(area, 2.0 * 10.0**-DECIMALS, join_style="mitre").covers(shapely.LineString(line)))
 
 

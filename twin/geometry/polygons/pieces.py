@@ -1,4 +1,4 @@
-"""Separate polygons on planes: their size and place, which of them lie near each other, their triangles."""
+"""Separate polygons on planes: their size and position, pairs close to each other, their triangles."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Pieces:
 
     @classmethod
     def of(cls, shapes: Shapes, least_width_mm: float) -> Pieces:
-        """The connected parts of one shape a plane; those of a smaller mean width are left out."""
+        """The connected parts of one shape per plane; those of a smaller mean width are omitted."""
         parts, planes = shapely.get_parts(shapes, return_index=True)
         width = 2.0 * shapely.area(parts) / np.maximum(shapely.length(parts), 1e-300)
         wanted = (shapely.get_type_id(parts) == _POLYGON) & (width > least_width_mm)
@@ -57,20 +57,19 @@ class Pieces:
         return np.asarray(shapely.get_coordinates(shapely.centroid(self.shapes)))
 
     def outline_points(self, most: int) -> tuple[FloatArray, NDArray[np.int64]]:
-        """Points of the outlines, about ``most`` a piece at most, and the piece of each."""
+        """Points of the outlines, about ``most`` per piece at most, and the piece of each."""
         points, of = shapely.get_coordinates(self.shapes, return_index=True)
         counts = np.bincount(of, minlength=len(self.shapes))
         every = np.maximum(1, counts // most)
-        place = places_in_runs(counts)
-        kept = place % every[of] == 0
+        kept = places_in_runs(counts) % every[of] == 0
         return points[kept], of[kept].astype(np.int64)
 
     def middles(self, least_share: float) -> tuple[FloatArray, NDArray[np.int64]]:
         """Middles of the largest circles inside of pieces, and the piece of each.
 
         Args:
-            least_share: pieces with a smaller area, as a part of their outline's length squared, are left out: long
-                thin ones have their middle nowhere in particular.
+            least_share: pieces with a smaller area, as a part of their outline's length squared, are omitted: the
+                middle of a long thin one is not well defined.
         """
         fat = np.flatnonzero(self.areas_mm2 > least_share * shapely.length(self.shapes) ** 2)
         size = np.sqrt(self.areas_mm2[fat])
@@ -78,7 +77,7 @@ class Pieces:
         return np.asarray(shapely.get_coordinates(shapely.get_point(circles, 0))), fat.astype(np.int64)
 
     def near_pairs(self, distance_mm: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Pairs of pieces on neighbouring planes that are no farther apart, seen along the normal."""
+        """Pairs of pieces on neighbouring planes at this distance at most, seen along the normal."""
         firsts = np.searchsorted(self.planes, np.arange(self.planes[-1] + 2))
         pairs = [np.empty((2, 0), dtype=np.int64)]
         for low, middle, high in zip(np.concatenate(([0], firsts[:-2])), firsts[:-1], firsts[1:], strict=True):
@@ -91,7 +90,7 @@ class Pieces:
 
 
 def prism_parts(shape: Shape) -> tuple[FloatArray, FloatArray]:
-    """What a prism over a polygon is made of, rounded to 1e-5 mm.
+    """Triangles and edges of a prism over a polygon, rounded to 1e-5 mm.
 
     Returns:
         triangles that fill the polygon, counter-clockwise, shape (t, 3, 2), and its edges, material on their left,
