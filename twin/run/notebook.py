@@ -35,7 +35,7 @@ def run_html(program: str, extent: str, summary: RunSummary, batches: Iterable[S
     """
     head = f"<b>{escape(program)}</b> {escape(extent)}; {summary.removed_volume_mm3:.1f} mm³ removed, "
     head += f"{summary.collisions} collisions"
-    names = ("tool", "cutting, s", "removed, mm³", "Fx", "Fy", "Fz", "resultant, N (peaks)", "power, W")
+    names = ("tool", "cutting, s", "removed, mm³", "peak Fx, N", "Fy", "Fz", "resultant", "peak power, W")
     rows = [
         (
             f"T{t.number} {t.description}",
