@@ -33,6 +33,8 @@ class Values:
 
     def pytest_assertion_pass(self, item: pytest.Item, lineno: int, orig: str, expl: str) -> None:
         """Take one comparison; see pytest's hook of this name."""
+        if "..." in expl or orig.splitlines()[0] not in item.path.read_text(encoding="utf-8"):
+            return  # shortened arrays; assertions of libraries
         found = _within(expl) or _ordered(expl)
         if found is None:
             return
