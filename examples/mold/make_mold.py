@@ -1,10 +1,10 @@
-"""Makes the mold of this example: a freeform cavity with bosses, ribs and small details, as a closed STL.
+"""Makes the mold of this example: a freeform cavity with bosses, ribs and small details, as a closed STL file.
 
     python examples/mold/make_mold.py mold.stl --triangles 195000
 
-The block is 100 x 80 x 35 mm, its highest place at z = 0. Walls have 5 degrees of draft; feet of walls have fillets of
-1.5 to 4 mm and heads are rounded. The surface is one height over the plan, without undercuts. A net of points is
-drawn over it and relaxed, so that triangles have about the same size on walls as on floors.
+The block is 100 x 80 x 35 mm, its highest point at z = 0. Walls have a draft of 5 degrees, fillets of 1.5 to 4 mm
+at their foot and rounded upper edges. The surface is a height field over the plan, without undercuts. A grid of points
+is laid over it and relaxed, so that triangles have about the same size on walls as on floors.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ Array = NDArray[np.float64]
 
 SIZE_MM = (100.0, 80.0, 35.0)
 DRAFT_DEG = 5.0
-#: Rounds of relaxation of the coarsest net, and of each finer one.
+#: Rounds of relaxation of the coarsest grid, and of each finer one.
 FIRST_ROUNDS, FINER_ROUNDS = 200, 25
-#: Fields across the coarsest net.
+#: Cells across the coarsest grid.
 COARSEST = 60
 
 
@@ -105,7 +105,7 @@ def mold_triangles(count: int) -> Array:
 
 
 def _top(net: Array) -> Array:
-    """Two triangles for each field of the net, along the diagonal that lies closer to the surface's own bend."""
+    """Two triangles for each cell of the grid, split along the diagonal that is closer to the surface."""
     a, b, c, d = net[:-1, :-1], net[1:, :-1], net[1:, 1:], net[:-1, 1:]
     short = np.linalg.norm(c - a, axis=-1) <= np.linalg.norm(d - b, axis=-1)
     pick = short[..., None, None]
@@ -115,7 +115,7 @@ def _top(net: Array) -> Array:
 
 
 def relaxed_net(across: int, along: int) -> tuple[Array, Array]:
-    """Plan of the net's points, shape (across + 1, along + 1) each; relaxed coarse first, then finer and finer."""
+    """Plan positions of the grid points, shape (across + 1, along + 1) each, relaxed on successively finer grids."""
     width, depth, _ = SIZE_MM
     halvings = max(0, math.ceil(math.log2(across / COARSEST)))
     x, y = np.meshgrid(np.array([0.0, width]), np.array([0.0, depth]), indexing="ij")
@@ -127,7 +127,7 @@ def relaxed_net(across: int, along: int) -> tuple[Array, Array]:
 
 
 def resampled(net: Array, shape: tuple[int, int]) -> Array:
-    """A net with another number of points, drawn through the old ones."""
+    """A grid with another number of points, interpolated through the old ones."""
     for axis, points in enumerate(shape):
         place = np.linspace(0.0, net.shape[axis] - 1.0, points)
         low = np.minimum(place.astype(np.int64), net.shape[axis] - 2)
@@ -137,7 +137,7 @@ def resampled(net: Array, shape: tuple[int, int]) -> Array:
 
 
 def relax(x: Array, y: Array, rounds: int) -> None:
-    """Draw the net's points to the middle of their neighbours, long sides pulling more: walls get their share."""
+    """Move grid points to the mean of their neighbours, weighted by distance, so that walls get enough points."""
     width, depth, _ = SIZE_MM
     for _ in range(rounds):
         z = mold_height(x - 0.5 * width, y - 0.5 * depth)
@@ -154,7 +154,7 @@ def relax(x: Array, y: Array, rounds: int) -> None:
 
 
 def write_stl(path: Path, triangles: Array) -> None:
-    """Write a binary STL; normals are left 0, readers take them from the corners."""
+    """Write a binary STL file; normals are 0, as readers compute them from the corners."""
     records = np.zeros(len(triangles), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
     records["corners"] = triangles
     path.write_bytes(b"mold".ljust(80) + len(triangles).to_bytes(4, "little") + records.tobytes())

@@ -3,7 +3,7 @@
     python examples/torus/make_torus.py [torus.stl]
 
 The part is a body of revolution about the z axis on a square plate; z = 0 is the plate's top. `PROFILE` has the sizes,
-`meridian` the curve that is turned: plate inside, inner fillet, tube, outer fillet.
+`meridian` the curve that is revolved: inner plate, inner fillet, tube, outer fillet.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ class Profile:
     """Sizes of the part, mm.
 
     Attributes:
-        ring_mm: from the axis to the middle of the tube.
-        tube_mm: radius of the tube; its middle lies in the plate's top, so half of it stands out.
+        ring_mm: distance of the tube's centre from the axis.
+        tube_mm: radius of the tube; its centre lies in the plate's top face, so half of it is above the plate.
         outer_mm, inner_mm: radii of the fillets between tube and plate.
         half_mm: half the side of the plate.
         thick_mm: thickness of the plate.
@@ -39,8 +39,8 @@ class Profile:
     thick_mm: float = 10.0
 
     def fillet(self, radius_mm: float, side: int) -> tuple[float, float]:
-        """Where a ball that touches plate and tube has its centre: distance from the axis, and tilt of the line from
-        the tube's middle to it above the plate, rad.
+        """Centre of a ball that touches plate and tube: distance from the axis, and angle above the plate of the line
+        from the tube's centre to it, rad.
 
         Args:
             side: +1 outside of the tube, -1 inside.
@@ -53,10 +53,10 @@ PROFILE = Profile()
 
 
 def meridian(steps: int, profile: Profile = PROFILE) -> NDArray[np.float64]:
-    """The curve that is turned about the axis, from the inner fillet's foot to the outer one's.
+    """The curve that is revolved about the axis, from the inner fillet's foot to the outer one's.
 
     Args:
-        steps: segments in all, of about equal angle.
+        steps: total number of segments, of about equal angle.
 
     Returns:
         shape (steps + 1, 2): distance from the axis, and height.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager
 from itertools import chain
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, get_args
 
-from twin.archive.container.partial import partial_path, reason
+from twin.archive.container.partial import replacing
 from twin.archive.force_table import force_schema, force_tables
 from twin.archive.reader import read_run
 from twin.errors import ArchiveError
@@ -61,7 +61,7 @@ def export_forces(run: str | PathLike[str], out: str | PathLike[str], on: ForceO
     tables = force_tables(read_run(run), on)
     first = next(tables)
     rows = 0
-    with _replacing(target) as partial, writer(partial, force_schema(on)) as sink:
+    with replacing(target) as partial, writer(partial, force_schema(on)) as sink:
         for table in chain([first], tables):
             sink.write_table(table)
             rows += table.num_rows
@@ -86,21 +86,6 @@ def write_csv(run: str | PathLike[str], stream: BinaryIO, on: ForceOn = "tool") 
 def _check_on(on: str) -> None:
     if on not in get_args(ForceOn):
         raise ArchiveError(f"forces on {on!r} are not known, expected {' or '.join(map(repr, get_args(ForceOn)))}")
-
-
-@contextmanager
-def _replacing(target: Path) -> Iterator[Path]:
-    """Path to write to; it becomes the target on success and is removed otherwise."""
-    partial = partial_path(target)
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        yield partial
-        partial.replace(target)
-    except OSError as error:
-        raise ArchiveError(f"{target}: cannot be written: {reason(error)}") from error
-    finally:
-        with suppress(OSError):
-            partial.unlink()
 
 
 @contextmanager

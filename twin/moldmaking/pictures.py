@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from twin.archive.container.partial import replacing
 from twin.arrays import FloatArray
 from twin.cam.path.toolpath import MoveKind, ToolPath
 from twin.cam.surface.drop_cutter import DropCutter
@@ -41,7 +42,6 @@ def draw(plan: MoldPlan, stages: Sequence[Stage], folder: Path) -> list[Path]:
     """
     from matplotlib.figure import Figure
 
-    folder.mkdir(parents=True, exist_ok=True)
     needle = DropCutter(plan.surface, None)
     files: list[Path] = []
     for stage in stages:
@@ -58,7 +58,8 @@ def draw(plan: MoldPlan, stages: Sequence[Stage], folder: Path) -> list[Path]:
         minutes = result.time.total_s / 60.0
         axes[0].set_title(f"{stage}: {result.path.name}, {minutes:.1f} min")
         file = folder / f"{plan.job.output.name}_{stage}.png"
-        figure.savefig(file, dpi=_DPI)
+        with replacing(file) as partial:
+            figure.savefig(partial, dpi=_DPI)
         files.append(file)
     return files
 

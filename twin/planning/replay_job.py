@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from twin.archive.container.partial import replacing
 from twin.arrays import FloatArray
 from twin.cam.path.to_nc import NcOptions, Operation, describe, kind_of
 from twin.errors import ToolPathError
@@ -67,27 +68,16 @@ def _tool(operation: Operation) -> dict[str, Any]:
     return table
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write a text file completely or not at all.
-
-    Raises:
-        ToolPathError: it cannot be written.
-    """
-    partial = path.with_name(f"{path.name}.partial")
-    try:
-        partial.write_text(text, encoding="utf-8")
-        partial.replace(path)
-    except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise ToolPathError(f"{path}: cannot be written: {error.strerror}") from error
-
-
 def write_replay_job(path: Path, tables: Mapping[str, Any], comment: str) -> None:
-    """Write a job file.
+    """Write a job file completely or not at all.
 
     Args:
         path: the file.
         tables: its tables.
         comment: its first line.
+
+    Raises:
+        ToolPathError: the file cannot be written.
     """
-    write_text(path, f"# {comment}\n\n{toml_text(tables)}")
+    with replacing(path, ToolPathError) as partial:
+        partial.write_text(f"# {comment}\n\n{toml_text(tables)}", encoding="utf-8")

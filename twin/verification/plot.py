@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from twin.archive.container.partial import replacing
 from twin.verification.deviation import Deviation
 
 if TYPE_CHECKING:
@@ -52,7 +53,8 @@ def plot_deviation(found: Deviation, out: Path, title: str = "") -> None:
         x, y, _ = region.point_mm
         plan.plot(x, y, "kx", markersize=5, markeredgewidth=0.8)
     _spread(spread, found, end)
-    figure.savefig(out, dpi=150)
+    with replacing(out) as partial:
+        figure.savefig(partial, dpi=150)
 
 
 def _spread(axes: Axes, found: Deviation, end: float) -> None:

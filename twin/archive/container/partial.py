@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
-from twin.errors import ArchiveError
+from twin.errors import ArchiveError, TwinError
 
 #: Bytes copied in one piece.
 _COPIED_TOGETHER = 1 << 22
@@ -22,6 +23,26 @@ def reason(error: OSError) -> str:
     """The system's message, in lower case and without its number."""
     text = error.strerror or str(error)
     return text[:1].lower() + text[1:]
+
+
+@contextlib.contextmanager
+def replacing(target: Path, refuse: type[TwinError] = ArchiveError) -> Iterator[Path]:
+    """Path to write to; on success it becomes the target, otherwise it is removed.
+
+    Args:
+        target: missing folders above it are created.
+        refuse: the error for a file that cannot be written.
+    """
+    partial = partial_path(target)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        yield partial
+        partial.replace(target)
+    except OSError as error:
+        raise refuse(f"{target}: cannot be written: {reason(error)}") from error
+    finally:
+        with contextlib.suppress(OSError):
+            partial.unlink()
 
 
 def copy_file(source: Path, target: Path, *, force: bool = False) -> Path:

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
+from twin.archive.container.partial import replacing
 from twin.cam.slices.sections import cut_sections
 from twin.geometry.polygons.shapes import Shape, cut_along, outline_rings, united
 from twin.workpiece.store import PLANE_AXES
@@ -36,12 +37,8 @@ def write_plot(path: Path, sliced: SlicedPart, reaches: Mapping[str, Reach]) -> 
     left, right = figure.subplots(1, 2)
     _draw_above(left, sliced, reaches)
     _draw_cut(right, sliced, reaches)
-    partial = path.with_name(f"{path.name}.partial")
-    try:
-        figure.savefig(partial, format=path.suffix[1:].lower())
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+    with replacing(path) as partial:
+        figure.savefig(partial)
 
 
 def _draw_above(axes: Axes, sliced: SlicedPart, reaches: Mapping[str, Reach]) -> None:
