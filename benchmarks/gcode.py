@@ -1,9 +1,9 @@
-"""Speed of reading a 3-axis surface program, beside LinuxCNC's rs274 where it is installed: prints one JSON object.
+"""Speed of reading a 3-axis surface program, compared with LinuxCNC's rs274 where it is installed: one JSON object.
 
     python -m benchmarks.gcode [--lines 200000] [--repeat 5] [--seed 1] [--long-lines 1000000]
 
-Every repetition runs each way of reading once, so that all meet the same load; figures are medians of repetitions.
-Peak memory is that of a process of its own which only makes the arrays; the text of the program is held in it.
+Every repetition runs each method of reading once, so that all meet the same load; figures are medians of repetitions.
+Peak memory is that of a separate process that only makes the arrays; it includes the text of the program.
 """
 
 from __future__ import annotations
@@ -23,9 +23,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks.report import report
+from gcode import interpret, motion_arrays
 from gcode.bulk.plain_runs import PlainStart, plain_run
-from gcode.flow.interpreter import interpret
-from gcode.report.motion_arrays import motion_arrays
 
 RS274 = shutil.which("rs274")
 POINTS_A_PASS = 400
@@ -108,7 +107,7 @@ def measure(options: argparse.Namespace, folder: Path) -> dict[str, float | None
     path.write_bytes(text)
     longer.write_bytes(surface_program(options.long_lines, options.seed))
     none.write_text("M30\n")
-    ways: dict[str, Callable[[bytes], None]] = {
+    readers: dict[str, Callable[[bytes], None]] = {
         "plain_run": run_plain,
         "arrays": run_arrays,
         "arrays_numbered": run_arrays,
@@ -116,10 +115,10 @@ def measure(options: argparse.Namespace, folder: Path) -> dict[str, float | None
     }
     texts = {"arrays_numbered": surface_program(options.lines, options.seed, numbered=True)}
     if RS274:
-        ways["rs274"] = rs274_runner(path)
-    rates: dict[str, list[float]] = {name: [] for name in ways}
+        readers["rs274"] = rs274_runner(path)
+    rates: dict[str, list[float]] = {name: [] for name in readers}
     for _ in range(options.repeat):
-        for name, read in ways.items():
+        for name, read in readers.items():
             rates[name].append(options.lines / seconds(read, texts.get(name, text)))
     figures: dict[str, float | None] = {
         f"{name}_lines_per_s": round(statistics.median(values)) for name, values in rates.items()

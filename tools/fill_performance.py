@@ -28,7 +28,7 @@ def table(speed: dict[str, Any]) -> str:
 
 
 def flat(speed: dict[str, Any]) -> str:
-    """What the cost does not depend on."""
+    """Figures that the cost does not depend on."""
     zigzag, block, memory = speed["zigzag"], speed["block_size"], dict(speed["memory"])
     rows = [
         "| | |",

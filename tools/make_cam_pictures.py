@@ -74,7 +74,7 @@ def roughed(part: Surface) -> Dexels:
 
 
 def rest_picture(part: Surface) -> None:
-    """What a roughing leaves, and where a ball must go at one level."""
+    """Material left by roughing, and the positions of a ball at one level."""
     stock = roughed(part)
     level = RestMaterial(stock, part, parse_tool("ball 6"), allowance_mm=0.1).level(-12.5)
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(15, 6.2), layout="constrained")

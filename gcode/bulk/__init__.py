@@ -1,1 +1,1 @@
-"""Runs of plain G0/G1 lines as arrays, and all motions of a program as arrays."""
+"""Runs of plain G0/G1 lines, read and executed at once with array arithmetic."""

@@ -1,4 +1,4 @@
-"""Runs of plain straight motions taken at once: what surface programs are made of, by the hundred thousand lines.
+"""Runs of plain straight motions executed at once: the bulk of surface programs, by the hundred thousand lines.
 
 `plain_run` does what `step` does, for many lines of words N, G0, G1, X, Y, Z, F, with the same numbers to the last bit.
 It raises no errors: it stops before a line that is not plain or that must be refused, and leaves that line to `step`.

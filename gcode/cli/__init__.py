@@ -1,6 +1,6 @@
-"""The command line: ``gcode check``, ``motions``, ``stats``, ``plot``.
+"""The command line: ``gcode check``, ``motions``, ``stats``, ``plot``, ``rewrite``.
 
-Results go to standard output, everything else to standard error. What is heavy is imported inside the commands, so
+Results go to standard output, everything else to standard error. Heavy modules are imported inside the commands, so
 that ``gcode --help`` answers at once.
 """
 

@@ -1,4 +1,4 @@
-"""The commands put together."""
+"""The program ``gcode``: its commands and the options of the program itself."""
 
 from __future__ import annotations
 

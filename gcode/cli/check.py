@@ -1,4 +1,4 @@
-"""``gcode check``."""
+"""``gcode check``: finds the errors of programs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``gcode motions``."""
+"""``gcode motions``: prints motions as JSON lines."""
 
 from __future__ import annotations
 

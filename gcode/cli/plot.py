@@ -1,4 +1,4 @@
-"""``gcode plot``."""
+"""``gcode plot``: draws the tool path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``gcode rewrite``."""
+"""``gcode rewrite``: writes a program again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``gcode stats``."""
+"""``gcode stats``: sums a program up."""
 
 from __future__ import annotations
 

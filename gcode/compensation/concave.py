@@ -1,4 +1,4 @@
-"""Where two shifted paths meet in a concave corner, as LinuxCNC chooses the point; the tool is on the left."""
+"""Intersection of two offset paths in a concave corner, as LinuxCNC chooses it; the tool is on the left."""
 
 from __future__ import annotations
 

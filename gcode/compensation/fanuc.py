@@ -1,4 +1,4 @@
-"""Cutter compensation as FANUC's controls make it (operator's manual, "Details of cutter compensation").
+"""Cutter compensation of FANUC's controls (operator's manual, "Details of cutter compensation").
 
 The control reads one motion in the plane ahead: each motion waits until the next one determines its end. At the end of
 a block offset vectors lead from the programmed corner to the tool's centre (`gcode.compensation.offset_vectors`).

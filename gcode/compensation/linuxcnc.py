@@ -1,4 +1,4 @@
-"""Cutter compensation as LinuxCNC's interpreter makes it.
+"""Cutter compensation of LinuxCNC's interpreter.
 
 A straight entry ends off its programmed end, an entry arc is replaced by one tangent to the same end. Convex
 corners are joined by an arc about the programmed corner, concave ones by moving the end of the motion before, which

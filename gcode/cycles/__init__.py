@@ -1,4 +1,4 @@
-"""Canned cycles of mills as pure functions: the words of a block in, the steps of its holes out."""
+"""Canned cycles of mills as pure functions: from the words of a block to the steps of its holes."""
 
 from gcode.cycles.controls import FANUC_CYCLES, HAAS_CYCLES, LINUXCNC_CYCLES
 from gcode.cycles.errors import CycleError

@@ -1,4 +1,4 @@
-"""Controls as data: what each does with the same words. `dialect_named` gives one by its name."""
+"""Dialects as data: the codes, words and rules of each control."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Which block comes next: subprograms, macros, jumps, loops, and the step of one block."""
+"""The course of a program: its lines in order, jumps, loops, subprograms and macros, and the step of one block."""

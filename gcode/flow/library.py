@@ -1,4 +1,4 @@
-"""Where subprograms are found: in the calling file, then in the files of a search path."""
+"""The search for subprograms: in the calling file, then in the files of a search path."""
 
 from __future__ import annotations
 

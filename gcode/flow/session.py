@@ -1,4 +1,4 @@
-"""The memory of a running program: what the functions of this folder read and change, block after block."""
+"""The memory of a running program: the state that the functions of this folder read and change."""
 
 from __future__ import annotations
 

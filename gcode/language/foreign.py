@@ -1,4 +1,4 @@
-"""Text that another kind of control understands, or no control: recognised by its marks and refused by name.
+"""Programs for another kind of control, and files that are not programs: recognised by marks, refused by name.
 
 A rule is data: what it is a mark of, and how much it proves. A certain mark is enough by itself; of likely ones two
 different ones of the same control are needed. Comments are taken out first, so that a note about another control

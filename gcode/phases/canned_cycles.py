@@ -1,4 +1,4 @@
-"""Canned cycles in the interpreter: a block's words in, the motions, dwells and spindle changes of its holes out."""
+"""Canned cycles in the interpreter: from the words of a block to motions, dwells and spindle changes."""
 
 from __future__ import annotations
 

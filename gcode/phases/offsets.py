@@ -1,4 +1,4 @@
-"""The phases that set zeros and offsets: work offsets, tool length, G10, G52 and G92. Nothing moves in them."""
+"""The phases of zeros and offsets: work offsets, tool length offset, G52 and G92. Nothing moves in them."""
 
 from __future__ import annotations
 

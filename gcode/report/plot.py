@@ -1,4 +1,4 @@
-"""A program's path as a picture; needs matplotlib, which is imported only here and only when a picture is drawn.
+"""The tool path of a program as a picture; matplotlib is imported only here, when a picture is drawn.
 
 Points are projected before they are drawn, so that all axes have one scale in every view.
 """

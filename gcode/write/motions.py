@@ -1,4 +1,4 @@
-"""Blocks of motions."""
+"""Blocks of straight motions and arcs."""
 
 from __future__ import annotations
 
