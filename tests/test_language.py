@@ -21,23 +21,14 @@ NOT_CLEAN: frozenset[str] = frozenset(
         "benchmarks",
         "docs/architecture.md",
         "docs/command-line.md",
-        "docs/compare.md",
         "docs/dexel.md",
         "docs/drop-cutter.md",
-        "docs/identify.md",
-        "docs/job-file.md",
-        "docs/measured-logs.md",
         "docs/nomenclature.md",
         "docs/offsets.md",
         "docs/paths.md",
         "docs/performance.md",
         "docs/references.md",
         "twin/cam",
-        "twin/cli",
-        "twin/comparison",
-        "twin/identification",
-        "twin/job",
-        "twin/measured",
     }
 )
 

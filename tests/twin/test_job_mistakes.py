@@ -73,7 +73,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
         {"stock__cylinder_mm": CYLINDER},
         "stock has box_mm and cylinder_mm: expected exactly one of box_mm, cylinder_mm, stl",
     ),
-    ({"stock__offset_mm": [0, 0, 1]}, "stock.offset_mm = [0, 0, 1]: expected it only beside stock.stl"),
+    ({"stock__offset_mm": [0, 0, 1]}, "stock.offset_mm = [0, 0, 1]: expected it only with stock.stl"),
     (
         {"stock__box_mm__max": [60, 30, -20]},
         "stock.box_mm.max[2] = -20: expected above stock.box_mm.min[2] = -20 (the box's extent along z)",

@@ -135,7 +135,7 @@ def _shown_default(name: str, field: FieldInfo) -> str | None:
 
 
 def _metavar(name: str, field: FieldInfo, annotation: Any) -> str | None:
-    """What stands for the value in the help: its unit where it has one; typer lists choices itself."""
+    """Placeholder of the value in the help: its unit if it has one; typer lists choices itself."""
     given = key_of(field).metavar
     if given is not None or get_origin(annotation) is Literal:
         return given
@@ -145,7 +145,7 @@ def _metavar(name: str, field: FieldInfo, annotation: Any) -> str | None:
 
 
 def type_metavar(annotation: Any) -> str | None:
-    """What stands for a value of a type in the help: nothing for a flag; None for a type that has no word."""
+    """Placeholder of a type in the help: empty for a flag, None for a type without one."""
     kinds = (kind for kind in _METAVARS if isinstance(annotation, type) and issubclass(annotation, kind))
     kind = next(kinds, None)
     return None if kind is None else _METAVARS[kind]

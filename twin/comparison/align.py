@@ -1,4 +1,4 @@
-"""How late a log is: cross-correlation over all delays, then refined below a sample."""
+"""Delay of a log: cross-correlation over all delays, then refined below a sample."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _LEAST_OVERLAP = 0.3
 _AS_GOOD = 0.99
 #: ... and as long an overlap, square root, to this part.
 _AS_LONG = 0.9
-#: So many peaks are refined before the best is taken ...
+#: This many peaks are refined before the best is taken ...
 _REFINED = 3
-#: ... and then neighbours a tooth period away are tried, at most so many on a side.
+#: ... and then neighbours a tooth period away are tried, at most this many on each side.
 _CLIMBED = 40
 #: Delays that fit as well are far apart when they lie this part of the log from each other; then those that reach the
 #: best to this part are taken for equals.
@@ -32,14 +32,14 @@ FAR_RIVALS = 0.25
 _EQUAL = 0.998
 #: Most samples that are correlated over all delays; longer records are thinned out first.
 _MOST_SAMPLES = 1 << 20
-#: The simulation is sampled so many times finer, and at this rate at least, before it is band-limited to the log's.
+#: The simulation is sampled this many times finer, and at this rate at least, before it is band-limited to the log's.
 _FINER = 4
 _FINE_HZ = 20000.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Delay:
-    """How late a log is.
+    """Delay of a log.
 
     Attributes:
         lag_s: run time = log time - lag.
@@ -64,7 +64,7 @@ def find_delay(run: RunForces, log: ForceLog, within_s: float | None = None, win
     """The delay at which log and run correlate best.
 
     For every delay the correlation coefficient over the overlap is taken, all measured axes together, each less its
-    mean there. Weighted by the square root of the overlap, so that a short chance likeness does not win, it tells
+    mean there. Weighted by the square root of the overlap, so that a short chance likeness does not win, it gives
     about where to look; among the peaks that are about as good there and overlap about as long, the best few are
     refined by the maximum of the band-limited correlation, and the highest coefficient wins. Where equals lie far
     apart, for the cut is steady, the one is taken that covers the windows and is nearest to 0.
@@ -196,7 +196,7 @@ def _refined(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, r
 
 
 def _covers(log: ForceLog, lag_s: float, windows: Sequence[Gap]) -> bool:
-    """Whether a log has samples all through the windows at a delay."""
+    """Whether a log has samples throughout the windows at a delay."""
     first, last = log.span_s
     step = 1.5 / log.rate_hz
     return all(first - lag_s <= begin + step and last - lag_s >= end - step for begin, end in windows)
@@ -210,12 +210,12 @@ def _climbed(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, w
     period = 60.0 / abs(turning[0]) / turning[1]
     part = _shared(run, log, (lag_s - _CLIMBED * period, lag_s + _CLIMBED * period))
     best, height = lag_s, _pearson(run, log, axes, lag_s, part)
-    for way in (period, -period):
+    for step in (period, -period):
         for _ in range(_CLIMBED):
-            higher = _pearson(run, log, axes, best + way, part)
-            if higher <= height or (within_s is not None and abs(best + way) > within_s):
+            higher = _pearson(run, log, axes, best + step, part)
+            if higher <= height or (within_s is not None and abs(best + step) > within_s):
                 break
-            best, height = best + way, higher
+            best, height = best + step, higher
     return best if best == lag_s else _refined(run, log, axes, best, 1.0 / log.rate_hz)
 
 
@@ -228,7 +228,7 @@ def _shared(run: RunForces, log: ForceLog, lags: Sequence[float]) -> Gap:
 
 
 def _pearson(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, part: Gap | None = None) -> float:
-    """Correlation over the overlap at one delay, all axes together; ``part`` of the log only, where it is given."""
+    """Correlation over the overlap at one delay, all axes together; ``part`` of the log only, if given."""
     t_s = log.t_s - lag_s
     begin, end = run.span_s
     inside = (t_s >= begin) & (t_s <= end) & outside_gaps(log, log.t_s)
@@ -257,9 +257,9 @@ def _top(scores: FloatArray, at: int) -> float:
 
 
 def better_axes(run: RunForces, log: ForceLog) -> tuple[dict[str, str], float]:
-    """Which signed axis of the log fits each axis of the run best, at its own best delay, and the score of that.
+    """The signed axis of the log that fits each axis of the run best, at its own best delay, and its score.
 
-    The means count here: in a steady slot two turned signs are half a tooth period of delay, and only means tell them.
+    The means count here: in a steady slot two reversed signs look like half a tooth period of delay, but for the means.
 
     Returns:
         for x, y, z of the tool the signed axis of the log as it is now, e.g. ``{"x": "-y", ...}``.

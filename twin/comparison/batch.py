@@ -45,7 +45,7 @@ class Row:
 
     Attributes:
         number: line of a CSV file, or number of the table in a TOML file, from 1.
-        found: None where it failed: ``message`` says why.
+        found: None where it failed; ``message`` has the reason.
     """
 
     number: int

@@ -1,4 +1,4 @@
-"""What may be wrong with a log or a run, said before the numbers are believed."""
+"""Possible mistakes in a log or a run, reported before the numbers are trusted."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ def _level(force_n: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> float:
 
 
 def check_rate(log: ForceLog, rpm: float, teeth: int) -> Iterator[str]:
-    """Samples enough for each tooth."""
+    """Enough samples for each tooth."""
     passing = abs(rpm) * teeth / 60.0
     if log.rate_hz < 2.0 * passing:
         yield (
             f"{log.source}: sampled at {log.rate_hz:g} Hz, below twice the tooth-passing frequency ({passing:g} Hz): "
-            f"expected at least {2.0 * passing:g} Hz; waveforms, delay and harmonics mean nothing, means do"
+            f"expected at least {2.0 * passing:g} Hz; only means are valid, not waveforms, delay and harmonics"
         )
     elif log.rate_hz < 10.0 * passing:
         yield (
@@ -70,13 +70,13 @@ def check_speed(log: ForceLog, found: SpindleSpeed | None, rpm: float) -> Iterat
     """The spindle ran as programmed."""
     if found is not None and abs(found.rpm / abs(rpm) - 1.0) > _SPEED_WITHIN:
         yield (
-            f"{log.source}: spindle at {found.rpm:.0f} rpm by its {found.way}, expected the run's {abs(rpm):g} rpm: "
-            "wrong run, or the override not at 100 %? Waveforms run apart; --phase lets each window have its own shift"
+            f"{log.source}: spindle at {found.rpm:.0f} rpm by its {found.source}, expected the run's {abs(rpm):g} rpm: "
+            "wrong run, or the override not at 100 %? Waveforms drift apart; --phase gives each window its own shift"
         )
 
 
 def check_overlap(run: RunForces, log: ForceLog, lag_s: float) -> Gap:
-    """The stretch that both cover, on the run's clock.
+    """The time that both cover, on the run's clock.
 
     Raises:
         CompareError: there is none.
@@ -94,11 +94,11 @@ def check_overlap(run: RunForces, log: ForceLog, lag_s: float) -> Gap:
 
 
 def check_fit(run: RunForces, log: ForceLog, score: float, likeness: float, settings: CompareSettings) -> Iterator[str]:
-    """A poor likeness: are the axes right?
+    """A poor fit: are the axes right?
 
     Args:
         score: correlation, each axis less its mean.
-        likeness: the same with the means left in.
+        likeness: the same with the means included.
     """
     if min(score, likeness) >= _POOR_FIT:
         return
@@ -139,11 +139,11 @@ def _turned(text: str) -> str:
 
 
 def check_delay(delay: Delay, log: ForceLog) -> Iterator[str]:
-    """A delay that could as well be another one far from it: neighbours a tooth period away are no matter."""
+    """A delay that may be another one far from it; neighbours a tooth period away do not matter."""
     far = max((abs(r - delay.lag_s) for r in delay.rivals_s), default=0.0)
     if far > FAR_RIVALS * log.duration_s:
         yield (
-            f"{log.source}: {len(delay.rivals_s)} other delays fit as well, up to {far:.3f} s away: the cut is steady "
-            "there, so that only the spindle's phase is known; that nearest to 0 is taken which covers the windows; "
-            "--lag-within SECONDS narrows the search"
+            f"{log.source}: {len(delay.rivals_s)} other delays fit equally well, up to {far:.3f} s away: the cut is "
+            "steady there, so that only the spindle's phase is known; of those that cover the windows the one nearest "
+            "to 0 is taken; --lag-within SECONDS narrows the search"
         )

@@ -1,4 +1,4 @@
-"""A run and a log laid over each other: corrections in order, then errors in every window."""
+"""Comparison of a run with a log: corrections in order, then errors in every window."""
 
 from __future__ import annotations
 
@@ -61,17 +61,17 @@ class WindowResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Comparison:
-    """All that a comparison found.
+    """Result of a comparison.
 
     Attributes:
         log: as corrected, on its own clock.
         lag_s: run time = log time - lag.
-        delay: how the lag was found, None where it was given.
-        t_s: shape (n,), samples of the overlap on the run's clock, gaps left out.
+        delay: result of the search for the lag, None where it was given.
+        t_s: shape (n,), samples of the overlap on the run's clock, without gaps.
         measured_n, simulated_n: shape (n, 3).
-        speed: measured spindle speed, None where nothing tells it.
-        corrections: everything that was done, in order; also on the log itself.
-        warnings: what may be wrong.
+        speed: measured spindle speed, None where it cannot be determined.
+        corrections: all, in order; also on the log itself.
+        warnings: possible mistakes.
     """
 
     run: RunForces
@@ -100,9 +100,9 @@ def compare_files(run: str | PathLike[str], measured: str | PathLike[str], setti
 
 
 def compare(run: RunForces, log: ForceLog, settings: CompareSettings) -> Comparison:
-    """Lay a log over a run.
+    """Compare a log with a run.
 
-    The order is: rate, filters, delay, zero (and the delay again, where a drift was taken away), windows.
+    The order is: rate, filters, delay, zero (and the delay again after a drift was subtracted), windows.
 
     Raises:
         CompareError: no overlap; forces in a wrong unit; a window outside; no air for the zero.
@@ -172,7 +172,7 @@ def _lag_record(lag_s: float, delay: Delay | None) -> Correction:
 
 
 def _zeroed(run: RunForces, log: ForceLog, lag_s: float, settings: CompareSettings) -> ForceLog:
-    """The amplifier's zero or line taken away."""
+    """The log without the amplifier's zero or drift."""
     offset = settings.zero
     if isinstance(offset, tuple) and len(offset) == 3:
         log = shift_zero(log, offset)
@@ -293,7 +293,7 @@ def _window(
 
 
 def _phase_records(windows: tuple[WindowResult, ...], settings: CompareSettings) -> Iterator[Correction]:
-    """What the shift of each window was."""
+    """The shift of each window."""
     if not settings.phase:
         return
     for w in windows:

@@ -10,11 +10,11 @@ from twin.arrays import FloatArray
 
 #: Multiples of the tooth-passing frequency that are listed.
 _MOST_TOOTH_LINES = 6
-#: Window length in periods of the lowest line that it takes to tell the lines apart.
+#: Window length in periods of the lowest line needed to separate the lines.
 _LEAST_PERIODS = 1.0
 #: Samples for each unknown of the fit.
 _LEAST_SAMPLES = 2.0
-#: A fit of so many samples is well conditioned: the normal equations, which are faster, serve as well.
+#: A fit of this many samples is well conditioned: the normal equations, which are faster, serve as well.
 _MANY_SAMPLES = 4000
 #: Lines below this part of the largest one have no phase that means anything.
 _FAINT = 0.02

@@ -1,4 +1,4 @@
-"""Phase of the spindle in one window: where no trigger says it, or the speed was not quite the programmed one."""
+"""Phase of the spindle in one window, without a trigger or at a speed that was not quite the programmed one."""
 
 from __future__ import annotations
 

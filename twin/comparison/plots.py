@@ -92,7 +92,7 @@ def spectra(found: Comparison) -> bytes:
 
 
 def error_histogram(found: Comparison) -> bytes:
-    """How often which error occurs, each axis, each window."""
+    """Frequency of errors, each axis, each window."""
     axes = found.log.axes
     figure = Figure(figsize=(_WIDTH, 2.7), dpi=_DPI, layout="constrained")
     parts = figure.subplots(1, len(axes), sharey=True, squeeze=False)[0]

@@ -1,4 +1,4 @@
-"""The report: one HTML file that needs no other, and its pictures as PNG beside it."""
+"""The report: one HTML file that needs no other, and its pictures as PNG next to it."""
 
 from __future__ import annotations
 
@@ -111,17 +111,17 @@ def _close(window: WindowResult) -> WindowResult:
 
 
 def _window(number: int, window: WindowResult) -> dict[str, Any]:
-    """What the template shows of a window."""
+    """A window's values for the template."""
     begin, end = window.span_s
     name = f"{begin:.2f}–{end:.2f} s" if not window.whole else f"{begin:.2f}–{end:.2f} s (whole overlap)"
-    told = "Three revolutions in the middle of the cut." if window.whole else f"Window {name}."
+    caption = "Three revolutions in the middle of the cut." if window.whole else f"Window {name}."
     shifted = f" Simulation shifted by {1e3 * window.shift_s:+.3f} ms." if window.shift_s else ""
     return {
         "name": name,
         "errors": window.errors,
         "axis_errors": [e for e in window.errors if e.axis in "xyz"],
         "picture": f"window_{number}",
-        "caption": told + shifted,
+        "caption": caption + shifted,
         "polar": f"polar_{number}" if window.rpm else "",
         "polar_caption": f"{name}: magnitude of the force over one turn of the spindle; 0° has the tip of the first "
         "tooth at +x, angles grow as the spindle turns.",

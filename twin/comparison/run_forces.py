@@ -1,4 +1,4 @@
-"""A run's forces as functions of machine time, with what a comparison needs to know of its tools."""
+"""A run's forces as functions of machine time, with the number of teeth of its tools."""
 
 from __future__ import annotations
 
@@ -71,11 +71,11 @@ class RunForces:
         return float(rpm), self.teeth.get(int(tool), 1)
 
     def air(self, margin_s: float, reach_s: float) -> tuple[Gap, ...]:
-        """Stretches in which nothing is cut, the time before and behind the run among them.
+        """Stretches in which nothing is cut, including the time before and after the run.
 
         Args:
-            margin_s: how far they keep away from cuts.
-            reach_s: how far before and behind the run they reach.
+            margin_s: distance that they keep from cuts.
+            reach_s: extent before and after the run.
         """
         cuts = self.steps[self.steps[:, 4] > 0.0, :2]
         begins = np.concatenate([[self.t_s[0] - reach_s], cuts[:, 1] + margin_s])
@@ -157,6 +157,6 @@ def teeth_of(header: RunHeader) -> dict[int, int]:
             found.setdefault(parts[1], {})[parts[2]] = int(value)
     teeth = {t["number"]: t["teeth"] for t in found.values() if len(t) == 2}
     for tool in header.tools:
-        if tool.number not in teeth and (told := _TEETH_IN_NAME.search(tool.description)):
-            teeth[tool.number] = int(told[1])
+        if tool.number not in teeth and (match := _TEETH_IN_NAME.search(tool.description)):
+            teeth[tool.number] = int(match[1])
     return teeth

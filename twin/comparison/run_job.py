@@ -1,4 +1,4 @@
-"""The measured log of a run's job: how its ``[measured]`` table says that it is read, and where it is."""
+"""The measured log of a run's job: its ``[measured]`` table and its file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from twin.settings.toml_file import parse_toml
 def job_measured(run: Path) -> tuple[dict[str, Any], Path | None]:
     """The ``[measured]`` table of the job file that a run's archive holds, less its file; and the file.
 
-    The file is where the job says, else next to the run or in the folder above, for runs that were moved.
+    The file is the one that the job names, else one of that name next to the run or in the folder above.
 
     Raises:
         ArchiveError: see `twin.archive.run_info`.

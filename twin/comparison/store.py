@@ -1,4 +1,4 @@
-"""A comparison into its MCAP file, beside the run."""
+"""A comparison into its MCAP file, next to the run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from twin.comparison.comparison import Comparison
 
 
 def archive_path(run: Path, measured: Path) -> Path:
-    """Where a comparison lies: ``slot.ap1.compare.mcap`` beside ``slot.mcap``, for a log ``ap1.csv``."""
+    """File of a comparison: ``slot.ap1.compare.mcap`` next to ``slot.mcap``, for a log ``ap1.csv``."""
     return run.with_name(f"{run.stem}.{measured.stem}.compare.mcap")
 
 

@@ -18,14 +18,14 @@ _DIGITS = 7
 
 
 def source_of(result: Identified) -> str:
-    """Where the coefficients come from."""
+    """Source of the coefficients."""
     fitted = [cut for cut in result.cuts if not cut.held_out]
-    told = f"twin identify, method {result.method}, {len(fitted)} cuts of {result.file.name}"
-    return f"{result.source} ({told})" if result.source else told
+    origin = f"twin identify, method {result.method}, {len(fitted)} cuts of {result.file.name}"
+    return f"{result.source} ({origin})" if result.source else origin
 
 
 def coefficients_toml(result: Identified) -> str:
-    """The file's text; it can be put at the end of a job file as it is.
+    """The file's text; it can be appended to a job file as is.
 
     Raises:
         IdentifyError: a coefficient that the cuts do not determine, or a set that no job may have.
@@ -56,12 +56,12 @@ def coefficients_toml(result: Identified) -> str:
 
 def _comment(result: Identified) -> Iterator[str]:
     estimate = result.estimate
-    yield "Cutting coefficients; this table can stand in a job file as it is."
+    yield "Cutting coefficients; this table can be copied into a job file as is."
     yield f"{100 * CONFIDENCE:g} % intervals, {estimate.dof} degrees of freedom:"
     for i, name in enumerate(NAMES):
         half = float(estimate.half_widths[i])
-        told = "given, not fitted" if estimate.fixed[i] else f"± {half:.4g}" if math.isfinite(half) else "± unknown"
-        yield f"  {name} = {estimate.values[i]:.6g} {_UNITS[name]} {told}"
+        interval = "given, not fitted" if estimate.fixed[i] else f"± {half:.4g}" if math.isfinite(half) else "± unknown"
+        yield f"  {name} = {estimate.values[i]:.6g} {_UNITS[name]} {interval}"
     yield f"R2 {result.r_squared[0]:.5f}, condition number {estimate.condition:.3g}"
     if result.runout is not None:
         degrees = math.degrees(result.runout.angle_rad)

@@ -1,4 +1,4 @@
-"""What the cuts cannot tell, and what looks wrong, in words."""
+"""Warnings: coefficients that the cuts cannot determine, and implausible results."""
 
 from __future__ import annotations
 
@@ -60,13 +60,13 @@ def doubts(
 
 
 def _logs(cuts: Cuts, results: Sequence[CutResult]) -> Iterator[str]:
-    """What the logs leave open."""
+    """Warnings about the logs."""
     teeth = cuts.tool.teeth if cuts.tool is not None else 1
     no_air = [r.name for r in results if any("no air found" in note for note in r.measured.notes)]
     if no_air:
         yield (
             f"{', '.join(no_air)}: no air in the log, zero not corrected: "
-            "an offset of the amplifier is taken for force, mostly for edge force"
+            "an offset of the amplifier is taken as force, mostly as edge force"
         )
     for r in results:
         if r.measured.samples_per_rev < _LEAST_SAMPLES * teeth:
@@ -92,7 +92,7 @@ def _runout(cuts: Cuts, results: Sequence[CutResult], found: bool) -> Iterator[s
 
 
 def _unlike(result: CutResult, teeth: int) -> float:
-    """Size of the harmonics that are no multiples of the tooth-passing frequency, by that of those that are."""
+    """Size of the harmonics between multiples of the tooth-passing frequency, relative to these multiples."""
     c = result.measured.harmonics
     if c is None or len(c) <= teeth:
         return 0.0
@@ -112,7 +112,7 @@ def _undetermined(cuts: Cuts, estimate: Estimate) -> Iterator[str]:
             f"{int((~estimate.fixed).sum())} coefficients): {why}; add cuts, or give some in fit.fixed"
         )
     elif estimate.dof <= 0:
-        yield "as many coefficients as equations: nothing is left to tell how sure they are; add cuts"
+        yield "as many coefficients as equations: their standard errors cannot be determined; add cuts"
     elif estimate.condition > _CONDITION:
         yield (
             f"condition number {estimate.condition:.0f} (expected below {_CONDITION:g}): the cuts are too much alike, "
@@ -126,7 +126,7 @@ def _uncertain(estimate: Estimate) -> Iterator[str]:
         if estimate.fixed[i] or not (math.isfinite(value) and math.isfinite(half)):
             continue
         if half > abs(value):
-            yield f"{name} = {value:.4g} ± {half:.2g}: the interval holds zero, these cuts do not tell it from none"
+            yield f"{name} = {value:.4g} ± {half:.2g}: the interval contains zero"
     correlation = estimate.correlation
     for i in range(len(NAMES)):
         for j in range(i):

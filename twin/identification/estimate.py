@@ -41,7 +41,7 @@ class Estimate:
         condition: condition number of the equations, columns scaled to length 1; infinite where rank is missing.
         rank: of the equations of the coefficients that are not fixed.
         spread_n: standard deviation between cuts beyond the stated errors, N (Paule and Mandel); None where no errors
-            are stated and the residuals alone tell.
+            are stated, and from the residuals alone.
     """
 
     values: FloatArray
@@ -84,8 +84,8 @@ def quantile(dof: float) -> float:
 def fit_linear(design: FloatArray, values: FloatArray, errors: FloatArray | None, fixed: FloatArray) -> Estimate:
     """Least squares, weighted by the standard errors of the values where these are known.
 
-    Without errors all values count alike and the residuals tell the noise. With errors, what the residuals have beyond
-    them is taken for a spread between cuts with one variance more, found by Paule and Mandel's rule: chi squared equals
+    Without errors all values count alike and the residuals give the noise. With errors, what the residuals have beyond
+    them is taken as a spread between cuts with one variance more, found by Paule and Mandel's rule: chi squared equals
     its degrees of freedom.
 
     Args:
@@ -109,7 +109,7 @@ def fit_linear(design: FloatArray, values: FloatArray, errors: FloatArray | None
 
 
 def _without_rounding(design: FloatArray) -> FloatArray:
-    """The equations with columns that are rounding, beside others of their kind, set to zero."""
+    """The equations with columns that are only rounding, compared with others of their kind, set to zero."""
     out = design.copy()
     length = np.linalg.norm(out, axis=0)
     for kind in (slice(0, None, 2), slice(1, None, 2)):

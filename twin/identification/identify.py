@@ -1,4 +1,4 @@
-"""Identification on one page: file of cuts -> models and measurements -> fit -> coefficients and how sure they are."""
+"""Identification on one page: file of cuts -> models and measurements -> fit -> coefficients and errors."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def identify_prepared(
     k = estimate.values
     results = tuple(_result(p, k) for p in prepared)
     r_squared = _r_squared(given.values, given.design @ k, given.axis)
-    return _told(cuts, method, estimate, r_squared, prepared, results, None, evaluations, at_bounds)
+    return _result_of(cuts, method, estimate, r_squared, prepared, results, None, evaluations, at_bounds)
 
 
 def _straight_cut(cuts: Cuts, cut: Cut) -> Prepared:
@@ -169,7 +169,9 @@ def _by_waveforms(cuts: Cuts, prepared: list[Prepared], fitted: list[Prepared]) 
         [np.repeat(np.flatnonzero(m.axes), 2 * len(measured_harmonics(m)) - 1) for m in together.measured]
     )
     r_squared = _r_squared(values, together.design(found.phases, runout_mm) @ k, axis.astype(np.float64))
-    return _told(cuts, "waveform", found.estimate, r_squared, prepared, results, found.runout, found.evaluations, ())
+    return _result_of(
+        cuts, "waveform", found.estimate, r_squared, prepared, results, found.runout, found.evaluations, ()
+    )
 
 
 def _sector(cuts: Cuts) -> float:
@@ -213,7 +215,7 @@ def _r_squared(values: FloatArray, fitted: FloatArray, axis: FloatArray) -> tupl
     return of(axis >= 0), of(axis == 0), of(axis == 1), of(axis == 2)
 
 
-def _told(
+def _result_of(
     cuts: Cuts,
     method: Method,
     estimate: Estimate,

@@ -62,7 +62,7 @@ def fit_means(given: Equations, fit: Fit) -> Estimate:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Search:
-    """What an iterative search came to.
+    """Result of an iterative search.
 
     Attributes:
         evaluations: simulations of all cuts.
@@ -108,7 +108,7 @@ def search_means(models: Sequence[Model], measured: Sequence[Measured], given: E
         gtol=_PRECISION,
         max_nfev=_MOST_EVALUATIONS,
     )
-    return _told(found, given, fixed, weights, (low[free], high[free]))
+    return _search_result(found, given, fixed, weights, (low[free], high[free]))
 
 
 def _errors(given: Equations, fixed: FloatArray) -> FloatArray:
@@ -118,7 +118,7 @@ def _errors(given: Equations, fixed: FloatArray) -> FloatArray:
     return np.hypot(given.errors, spread)
 
 
-def _told(
+def _search_result(
     found: optimize.OptimizeResult,
     given: Equations,
     fixed: FloatArray,

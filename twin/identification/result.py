@@ -1,4 +1,4 @@
-"""What an identification comes to."""
+"""Result of an identification."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ class Runout:
     """A runout that was found.
 
     Attributes:
-        size_mm, angle_rad: as `runout_mm` and `runout_angle_deg` of a tool; with even teeth the angle is told up to
-            one pitch, for the log does not say which tooth is the first.
+        size_mm, angle_rad: as `runout_mm` and `runout_angle_deg` of a tool; with constant pitch the angle is known
+            within one pitch, for the log does not show which tooth is the first.
         half_width_mm: shape (2,), half the widths of the 95 % intervals along and across tooth 0.
     """
 
@@ -75,7 +75,7 @@ class Runout:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Identified:
-    """Coefficients, how sure they are, and how well they fit.
+    """Coefficients, their errors, and the quality of the fit.
 
     Attributes:
         r_squared: of the quantity that was fitted: all of it, then x, y, z; NaN where it does not vary.
@@ -83,7 +83,7 @@ class Identified:
         runout: None where it was not looked for.
         evaluations: how often the search computed the forces of all cuts; 0 where nothing was searched.
         at_bounds: coefficients that ended on a bound of the search.
-        warnings: what the cuts cannot tell, one line each.
+        warnings: doubts about the result, one line each.
     """
 
     file: Path

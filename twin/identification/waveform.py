@@ -1,4 +1,4 @@
-"""Coefficients from waveforms, with phases and runout as unknowns beside them.
+"""Coefficients from waveforms, with phases and runout as further unknowns.
 
 The forces are linear in the coefficients at given phases and runout, so these alone are searched, and the best
 coefficients follow from linear least squares at each trial (variable projection; Golub and Pereyra, 1973). Waveforms
@@ -30,7 +30,7 @@ _ALTERNATIONS = 6
 _SIZES = (0.15, 0.4)
 _DIRECTIONS = 6
 _PRECISION = 1e-10
-#: A harmonic that alone decides an unknown has nothing left to tell its noise by.
+#: A harmonic that alone decides an unknown leaves no residual for its noise.
 _LEAST_FREE = 1e-6
 _PHASE_STEP_RAD = 1e-5
 #: Step of slopes over runout, in feeds per tooth; chips end at places that move with it.
@@ -44,8 +44,8 @@ class Waveforms:
     Attributes:
         angle_rad: shape (cuts,), phase where it is given, NaN where it is to be found.
         fixed: shape (6,), see `twin.identification.estimate.fixed_values`.
-        sector_rad: directions of runout that can be told apart where no phase is given: one pitch of even teeth, for
-            any tooth may be called the first; else a full turn.
+        sector_rad: directions of runout that can be distinguished where no phase is given: one pitch if it is constant,
+            for any tooth may be called the first; else a full turn.
     """
 
     models: Sequence[Model]
@@ -103,12 +103,12 @@ class Waveforms:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WaveformFit:
-    """What the fit came to.
+    """Result of the fit.
 
     Attributes:
         phases: shape (cuts,), spindle angles at the logs' time 0.
         runout_mm: shape (2,), along and across tooth 0; None where the files' own was used.
-        runout: the same, for people.
+        runout: the same, human-readable.
         evaluations: how often the forces of all cuts were computed.
     """
 
@@ -130,7 +130,7 @@ def fit_waveforms(cuts: Waveforms, guesses: Sequence[FloatArray], *, runout: boo
     starts = [search.settled(k, r) for k in (guesses or [np.array(START)]) for r in search.runouts()]
     best = min(starts, key=search.cost)
     found = search.refined(best)
-    return search.told(found)
+    return search.result_of(found)
 
 
 def measured_harmonics(measured: Measured) -> ComplexArray:
@@ -233,8 +233,8 @@ class _Search:
         found = optimize.least_squares(left, trial, jac=self.slopes, ftol=_PRECISION, xtol=_PRECISION, gtol=_PRECISION)
         return np.asarray(found.x)
 
-    def told(self, trial: FloatArray) -> WaveformFit:
-        """Coefficients at a trial with their errors, phases and runout free beside them."""
+    def result_of(self, trial: FloatArray) -> WaveformFit:
+        """Coefficients at a trial with their errors, with phases and runout free as well."""
         k, left = self.solve(trial)
         phases, runout_mm = self.split(trial)
         given = np.isfinite(self.cuts.fixed)
@@ -266,10 +266,10 @@ class _Search:
         turn = 2.0 * math.pi
         if runout_mm is not None:
             angle = math.atan2(runout_mm[1], runout_mm[0]) % turn
-            behind = self.sector * math.floor(angle / self.sector)
-            c, s = math.cos(behind), math.sin(behind)
+            sectors = self.sector * math.floor(angle / self.sector)
+            c, s = math.cos(sectors), math.sin(sectors)
             runout_mm = np.array([[c, s], [-s, c]]) @ runout_mm
-            phases = phases + behind
+            phases = phases + sectors
         return np.where(self.free_phase, phases % turn, phases), runout_mm
 
 

@@ -1,4 +1,4 @@
-"""Files of a result, each whole or not at all: all are written beside their names before one gets its name."""
+"""Files of a result, each whole or not at all: all are written under temporary names before one gets its own."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The job file: one TOML file that says what is replayed, on which stock, with which tools, and how finely.
+"""The job file: one TOML file with the program, the stock, the tools and the resolution of a replay.
 
-`load_job` reads one and says every mistake in it at once, as a `twin.errors.JobError`.
+`load_job` reads one and reports every mistake in it at once, as a `twin.errors.JobError`.
 """
 
 from twin.job.load import job_from_dict, load_job

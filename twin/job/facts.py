@@ -1,4 +1,4 @@
-"""What can be trusted in a job file that has mistakes."""
+"""Values of a settings file that can be trusted although it has mistakes."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from twin.settings.problems import Location
 
 
 class Facts:
-    """Values of a job file by location; those with a mistake in them are as if they were not there.
+    """Values of a job file by location; those with a mistake in them are as if they were absent.
 
     Args:
         data: the file's tables.
-        mistakes: locations of what is wrong.
+        mistakes: their locations.
         default: value of a key that is not given, None where there is none.
     """
 
@@ -25,7 +25,7 @@ class Facts:
         self._default = default
 
     def get(self, *location: str | int) -> Any:
-        """The value at a place, its default when it is not given, None where neither is to be had."""
+        """The value at a location, its default when it is not given, None without either."""
         if self.doubtful(*location):
             return None
         if not self.given(*location):
@@ -36,7 +36,7 @@ class Facts:
         return value
 
     def given(self, *location: str | int) -> bool:
-        """Whether a place is in the file, right or wrong."""
+        """Whether a location is in the file, right or wrong."""
         value: Any = self._data
         for key in location:
             if isinstance(key, int):
@@ -48,11 +48,11 @@ class Facts:
         return True
 
     def wrong(self, *location: str | int) -> bool:
-        """Whether a mistake is at a place or above it."""
+        """Whether a mistake is at a location or above it."""
         return any(location[:n] in self._mistakes for n in range(len(location) + 1))
 
     def doubtful(self, *location: str | int) -> bool:
-        """Whether a mistake is at a place, above it or below it."""
+        """Whether a mistake is at a location, above it or below it."""
         return self.wrong(*location) or any(place[: len(location)] == location for place in self._mistakes)
 
     def count(self, *location: str | int) -> int:

@@ -1,4 +1,4 @@
-"""Job files in: read, check everything, and say every mistake at once."""
+"""Job files: read, check everything, and report every mistake at once."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def load_job(path: str | PathLike[str]) -> Job:
     """Read a job file.
 
     Raises:
-        JobError: the file cannot be read, is no TOML, or has mistakes: all of them are in the message.
+        JobError: the file cannot be read, is not TOML, or has mistakes: all of them are in the message.
     """
     path = Path(path)
     data, text = read_toml(path, "a job file", JobError)
@@ -61,7 +61,7 @@ def _job(data: Mapping[str, Any], path: Path, text: str) -> Job:
 
 
 def _with_tool(problem: Problem, facts: Facts) -> Problem:
-    """Say the tool's number where a mistake is in a tool's table."""
+    """The problem with the tool's number where it is in a tool's table."""
     if problem.location[:1] != ("tools",) or len(problem.location) < 3 or problem.location[2] == "number":
         return problem
     return Problem(problem.location, problem.text, facts.get("tools", problem.location[1], "number"))

@@ -205,7 +205,7 @@ class Output(Table):
 
 
 class Measured(CompareSettings, LogFile):
-    """A measured force log of this program: where it is, how it is read, corrected, and compared with the run."""
+    """A measured force log of this program: its file, reading, corrections and windows."""
 
 
 class JobFile(Table):

@@ -1,4 +1,4 @@
-"""Rules between the tables of a job file, and between the file and the files beside it."""
+"""Rules between the tables of a job file, and between the file and the files it names."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from twin.settings.problems import Problem, wrong
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
 
 _MESH_ONLY = ("stl_scale", "offset_mm")
-#: More slices than this in all are taken for a slip of the decimal point.
+#: More slices than this in all are taken for a misplaced decimal point.
 _MOST_SLICES = 1_000_000
 #: Angles to propose in place of one that does not divide a turn.
 _EVEN_ANGLES_DEG = (0.1, 0.2, 0.25, 0.5, *(float(n) for n in range(1, 361) if 360 % n == 0))
 
 
 def one_stock(facts: Facts, _folder: Path) -> Iterator[Problem]:
-    """The stock is given once; what belongs to a mesh stands only beside a mesh."""
+    """The stock is given once; keys of a mesh are given only with a mesh."""
     if facts.wrong("stock"):
         return
     given = [key for key in STOCKS if facts.given("stock", key)]
@@ -33,7 +33,7 @@ def one_stock(facts: Facts, _folder: Path) -> Iterator[Problem]:
     elif given != ["stl"]:
         for key in _MESH_ONLY:
             if facts.given("stock", key) and not facts.doubtful("stock", key):
-                yield wrong(("stock", key), facts.get("stock", key), "it only beside stock.stl")
+                yield wrong(("stock", key), facts.get("stock", key), "it only with stock.stl")
 
 
 def box_has_extent(facts: Facts, _folder: Path) -> Iterator[Problem]:
@@ -109,7 +109,7 @@ def pitch_below_tools(facts: Facts, _folder: Path) -> Iterator[Problem]:
 
 
 def slices_countable(facts: Facts, _folder: Path) -> Iterator[Problem]:
-    """A pitch that makes millions of slices is a slip."""
+    """A pitch that makes millions of slices is a mistake."""
     pitch = facts.get("simulation", "slice_pitch_mm")
     low, high = facts.get("stock", "box_mm", "min"), facts.get("stock", "box_mm", "max")
     if pitch is None or low is None or high is None:
@@ -121,7 +121,7 @@ def slices_countable(facts: Facts, _folder: Path) -> Iterator[Problem]:
 
 
 def angle_divides_turn(facts: Facts, _folder: Path) -> Iterator[Problem]:
-    """Samples stand at the same angles in every revolution."""
+    """Samples are at the same angles in every revolution."""
     angle = facts.get("simulation", "angle_step_deg")
     if angle is None:
         return

@@ -34,7 +34,7 @@ class AxisMap:
 
     A term is a sign, perhaps a factor (``2.5*Fx``, for a channel whose sensitivity is known), and a column: its name in
     the file with or without the unit, in any case, or ``#3`` for the third one. Sums are allowed: ``x=Fx12+Fx34``. An
-    axis that is left out is not measured.
+    axis that is omitted is not measured.
 
     Attributes:
         entries: axis and the text of its sum, in the order x, y, z.
@@ -71,7 +71,7 @@ class AxisMap:
         """Factors and columns for each axis.
 
         Args:
-            names: columns by every way of naming them, see `aliases`.
+            names: columns by all of their names, see `aliases`.
 
         Raises:
             MeasuredError: an unknown column.
@@ -87,7 +87,7 @@ class AxisMap:
 
 
 def aliases(columns: Iterable[str]) -> dict[str, str]:
-    """Columns by their names, lower-case names, names without unit, and numbers; what is not unique is left out."""
+    """Columns by their names, lower-case names, names without unit, and numbers; what is not unique is omitted."""
     names = list(columns)
     made: dict[str, str] = {}
     bases = [split_unit(n)[0] for n in names]
@@ -101,9 +101,9 @@ def aliases(columns: Iterable[str]) -> dict[str, str]:
 
 
 def guess_map(columns: Iterable[str]) -> AxisMap | None:
-    """The map that the names themselves tell, ``x=Fx,y=Fy,z=Fz``; None where they do not, or tell it twice.
+    """The map that follows from the names, ``x=Fx,y=Fy,z=Fz``; None where none follows, or more than one.
 
-    Where measured and computed forces stand side by side, those that are named as computed are left out.
+    Where measured and computed forces stand side by side, those that are named as computed are omitted.
     """
     names = list(columns)
     for among in (names, [n for n in names if not _NOT_MEASURED.search(n)]):

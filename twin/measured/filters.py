@@ -1,4 +1,4 @@
-"""Low-pass and notch filters, forwards and backwards (no phase) unless asked otherwise."""
+"""Low-pass and notch filters, forwards and backwards (no phase shift) unless causal."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ Phase: TypeAlias = Literal["zero", "causal"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Filter:
-    """A filter that can be put on a log and, the same, on a simulation.
+    """A filter that is applied to a log and, equally, to a simulation.
 
     Attributes:
         kind: ``lowpass`` (Butterworth) or ``notch``.
-        hz: corner of the low-pass, -3 dB as applied; or the notch's middle.
+        hz: corner of the low-pass, -3 dB as applied; or the centre of the notch.
         order: of the low-pass, in one direction.
-        quality: of the notch: its middle by its width at -3 dB.
+        quality: of the notch: centre divided by width at -3 dB.
         phase: ``zero`` runs forwards and backwards; ``causal`` forwards only, as a filter in an amplifier does.
     """
 
@@ -35,12 +35,12 @@ class Filter:
     phase: Phase = "zero"
 
     def text(self) -> str:
-        """For people, one line."""
-        way = "forwards and backwards, no phase shift" if self.phase == "zero" else "causal"
+        """One human-readable line."""
+        direction = "forwards and backwards, no phase shift" if self.phase == "zero" else "causal"
         if self.kind == "lowpass":
             late = "" if self.phase == "zero" else f", {1e3 * self.delay_s():.3f} ms late in its pass band"
-            return f"low-pass {self.hz:g} Hz (-3 dB), Butterworth order {self.order}, {way}{late}"
-        return f"notch at {self.hz:g} Hz, {self.hz / self.quality:.3g} Hz wide, {way}"
+            return f"low-pass {self.hz:g} Hz (-3 dB), Butterworth order {self.order}, {direction}{late}"
+        return f"notch at {self.hz:g} Hz, {self.hz / self.quality:.3g} Hz wide, {direction}"
 
     def delay_s(self) -> float:
         """Delay of slow signals."""
@@ -70,7 +70,7 @@ class Filter:
         return np.asarray(signal.sosfiltfilt(sos, values, axis=0, padlen=max(pad, 0)))
 
     def _memory_s(self) -> float:
-        """How long the filter rings."""
+        """Time over which the filter rings."""
         width = self.hz if self.kind == "lowpass" else self.hz / self.quality
         return 1.5 / width
 

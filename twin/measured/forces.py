@@ -32,7 +32,7 @@ def force_log(raw: RawLog, reading: LogReading = AS_IN_FILE) -> ForceLog:
     """Forces on the tool in machine axes.
 
     The map is applied first: it gives the force on the body ``force_on`` in machine axes. Where that is the workpiece,
-    all three signs are then turned. A map that already holds the turn goes with ``force_on="tool"``.
+    all three signs are then reversed. A map that already reverses them goes with ``force_on="tool"``.
 
     Args:
         reading: axis map (without one the columns that are named after the axes), body that the mapped force acts on,
@@ -58,10 +58,10 @@ def force_log(raw: RawLog, reading: LogReading = AS_IN_FILE) -> ForceLog:
         )
     if not rows.all():
         first = float(raw.t_s[np.argmin(rows)])
-        notes.append(f"{int((~rows).sum())} rows without a number left out, the first at {first:.4f} s")
+        notes.append(f"{int((~rows).sum())} rows without a number omitted, the first at {first:.4f} s")
     sign = -1.0 if force_on == "workpiece" else 1.0
     if force_on == "workpiece":
-        notes.append("signs turned: the log is the force on the workpiece, here it is the force on the tool")
+        notes.append("signs reversed: the log is the force on the workpiece, here it is the force on the tool")
     force = np.zeros((int(rows.sum()), 3))
     for axis, parts in terms.items():
         for factor, column in parts:
@@ -76,7 +76,7 @@ def force_log(raw: RawLog, reading: LogReading = AS_IN_FILE) -> ForceLog:
         t_s=vector(t_s, "t_s"),
         force_n=frozen(force, "force_n", (None, 3)),
         rate_hz=raw.rate_hz,
-        channels=_told(raw, terms),
+        channels=_channel_texts(raw, terms),
         source=raw.source,
         axes=tuple(a for a in AXES if a in terms),
         force_on=force_on,
@@ -98,7 +98,7 @@ def _map_for(raw: RawLog, axis_map: AxisMap | None) -> tuple[AxisMap, list[str]]
     offer = (candidates or list(raw.columns))[:3]
     example = ",".join(f"{axis}={name}" for axis, name in zip(AXES, offer, strict=False))
     raise MeasuredError(
-        f"{raw.source}: the names do not tell which columns are Fx, Fy and Fz; columns are {raw.listing()}; "
+        f"{raw.source}: the names do not show which columns are Fx, Fy and Fz; columns are {raw.listing()}; "
         f'give them with their signs, e.g. --map "{example}"'
     )
 
@@ -110,22 +110,22 @@ def _may_be_force(channel: Channel) -> bool:
 
 def _newtons(raw: RawLog, channel: Channel, unit: str | None, *, scaled: bool) -> tuple[float, list[str]]:
     """Newtons for one unit of a channel."""
-    told = unit or channel.unit
-    if not told:
+    stated = unit or channel.unit
+    if not stated:
         return 1.0, [f"column {channel.name!r} has no unit: taken as N"]
-    known = find_unit(told)
+    known = find_unit(stated)
     if known is not None and known[0] == "force":
         return known[1], []
     if known is not None and known[0] in ("voltage", "charge") and scaled:
-        return 1.0, [f"column {channel.name!r} in {told}: the factor of the axis map is taken as N/{told}"]
+        return 1.0, [f"column {channel.name!r} in {stated}: the factor of the axis map is taken as N/{stated}"]
     hint = "; with a known sensitivity give its factor in the map, e.g. x=2.5*" + channel.base if known else ""
     raise MeasuredError(
-        f"{raw.source}: column {channel.name!r} is in {told!r}, expected a unit of force (N, kN, lbf) or --unit{hint}"
+        f"{raw.source}: column {channel.name!r} is in {stated!r}, expected a unit of force (N, kN, lbf) or --unit{hint}"
     )
 
 
-def _told(raw: RawLog, terms: dict[str, tuple[Term, ...]]) -> tuple[str, str, str]:
-    """What each axis comes from, for people."""
+def _channel_texts(raw: RawLog, terms: dict[str, tuple[Term, ...]]) -> tuple[str, str, str]:
+    """Source of each axis, human-readable."""
     texts = []
     for axis in AXES:
         text = ""

@@ -1,4 +1,4 @@
-"""Measured force logs: as they stand in the file, and as forces on the tool in machine axes."""
+"""Measured force logs: as in the file, and as forces on the tool in machine axes."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from twin.settings.force_on import ForceOn
 #: First and last moment that a gap lies between, s.
 Gap: TypeAlias = tuple[float, float]
 AXES = ("x", "y", "z")
-#: Two samples further apart than so many sampling intervals have a gap between them.
+#: Two samples further apart than this many sampling intervals have a gap between them.
 GAP_INTERVALS = 1.75
 #: Samples are uneven when half of the steps are off by more than this part of the interval ...
 UNEVEN = 0.1
-#: ... and have a gap where a step is so many times longer than nearly all of them.
+#: ... and have a gap where a step is this many times longer than nearly all of them.
 UNEVEN_GAP = 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Correction:
-    """Something that was done to a log on purpose, to be printed and stored.
+    """A correction made to a log on purpose, to be printed and stored.
 
     Attributes:
         kind: ``offset``, ``drift``, ``resample``, ``lowpass``, ``notch``, ``lag``, ``phase``.
-        text: for people, one line.
+        text: one human-readable line.
         values: the numbers, units in the names.
     """
 
@@ -44,7 +44,7 @@ class Channel:
     Attributes:
         name: as in the file, its unit included where the name holds it, e.g. ``Fx [N]``.
         base: the name without unit, e.g. ``Fx``.
-        unit: as in the file or as given, ``""`` where nobody says it.
+        unit: as in the file or as given, ``""`` where not stated.
         values: shape (n,), in that unit; NaN where the file has no number.
     """
 
@@ -63,8 +63,8 @@ class RawLog:
         format: what it was read as, e.g. ``delimited text``.
         t_s: shape (n,), strictly increasing, as in the file.
         rate_hz: sampling rate.
-        columns: by name as in the file, in the file's order, the time column left out.
-        notes: what was done to read it, one line each.
+        columns: by name as in the file, in the file's order, without the time column.
+        notes: how it was read, one line each.
     """
 
     source: Path
@@ -90,15 +90,15 @@ class ForceLog:
         t_s: shape (n,), strictly increasing, clock of the log.
         force_n: shape (n, 3), x, y, z; zero on an axis that is not in ``axes``.
         rate_hz: sampling rate.
-        channels: what each axis comes from, e.g. ``-Fy [N]``, order x, y, z; ``""`` for an axis that is not measured.
+        channels: source of each axis, e.g. ``-Fy [N]``, order x, y, z; ``""`` for an axis that is not measured.
         axes: the axes that were measured.
         force_on: the body that the log's own numbers act on; ``force_n`` is always the force on the tool.
-        unit: that the forces were taken to be in, ``""`` where nobody said one.
+        unit: that the forces were taken to be in, ``""`` where not stated.
         spindle_angle_rad: shape (n,), continuous, or None.
         trigger_s: moments of a once-per-revolution pulse, or None.
         gaps: where samples are missing.
-        notes: what reading the log took, one line each.
-        corrections: what was done to it afterwards, in order.
+        notes: how it was read, one line each.
+        corrections: those made afterwards, in order.
     """
 
     t_s: FloatArray
@@ -127,7 +127,7 @@ class ForceLog:
 
 
 def gaps_of(t_s: FloatArray, rate_hz: float) -> tuple[Gap, ...]:
-    """Places where the time makes a leap; in samples that are uneven all along, a leap far beyond their steps.
+    """Jumps of the time; in samples that are uneven throughout, jumps far beyond their steps.
 
     Args:
         t_s: shape (n,), increasing.

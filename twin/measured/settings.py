@@ -1,7 +1,7 @@
-"""How a measured log is read, corrected and laid over a run: the one declaration of these keys.
+"""Reading, correction and comparison of a measured log: the one declaration of these keys.
 
 The job's ``[measured]``, files of test cuts, the options and batch tables of ``twin compare``, and the functions that
-read logs take these tables. Texts stay as written; what they mean is in the properties.
+read logs take these tables. Texts stay as written; the properties have their values.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _delimiter(value: Any) -> Any:
 
 
 class LogReading(Table):
-    """How a log is read as forces on the tool in machine axes."""
+    """Reading of a log as forces on the tool in machine axes."""
 
     map: Annotated[str | None, BeforeValidator(_axis_map), Key(metavar="MAP", unset="by the column names")] = Field(
         default=None, description="columns for the axes with their signs, e.g. x=-Fy,y=-Fx,z=Fz"
@@ -135,7 +135,7 @@ class LogReading(Table):
 
 
 class LogCorrections(Table):
-    """What is done to a log before it is compared with a run."""
+    """Corrections of a log before it is compared with a run."""
 
     lag_s: Annotated[
         float | None,
@@ -163,7 +163,7 @@ class LogCorrections(Table):
         BeforeValidator(_listed),
         Key(options=("--notch",), metavar="HZ[:Q]", unset="none"),
     ] = Field(default=(), description="notch filter of log and run: HZ or HZ:QUALITY")
-    causal: bool = Field(default=False, description="filters run forwards only, not both ways")
+    causal: bool = Field(default=False, description="filters run forwards only, not forwards and backwards")
     filter_both: Annotated[bool, Key(options=("--filter-both/--filter-log-only",))] = Field(
         default=True, description="filter the run like the log"
     )
@@ -186,7 +186,7 @@ class LogCorrections(Table):
 
 
 class CompareSettings(LogCorrections, LogReading):
-    """How a log is read, corrected, and where it is compared with a run."""
+    """Reading and correction of a log, and the windows in which it is compared with a run."""
 
     windows: Annotated[
         tuple[Annotated[str, BeforeValidator(_window)], ...],
@@ -204,12 +204,12 @@ class CompareSettings(LogCorrections, LogReading):
 
 
 class LogFile(Table):
-    """Where a log is."""
+    """File of a log."""
 
     file: Annotated[FilePath | None, Key(unset="none")] = Field(
         default=None, description="the log, relative to the job file's folder"
     )
 
 
-#: A log read as its file says.
+#: Nothing given: a log is read as its file states.
 AS_IN_FILE = LogReading()

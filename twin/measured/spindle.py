@@ -28,31 +28,31 @@ class SpindleSpeed:
 
     Attributes:
         rpm: always positive.
-        share: part of the alternating power on the comb's lines, 1 where pulses or an angle tell the speed.
-        way: ``spectrum``, ``trigger`` or ``angle``.
+        share: part of the alternating power on the comb's lines, 1 where pulses or an angle give the speed.
+        source: ``spectrum``, ``trigger`` or ``angle``.
     """
 
     rpm: float
     share: float
-    way: str
+    source: str
 
 
 def spindle_speed(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpeed | None:
-    """The speed of the spindle in a log; None where nothing tells it.
+    """The speed of the spindle in a log; None where it cannot be determined.
 
     Args:
         teeth: of the tool.
         expected_rpm: speeds from 0.65 to 1.5 times this one are looked at in a spectrum.
     """
     if log.trigger_s is not None and len(log.trigger_s) > 2:
-        return SpindleSpeed(rpm=60.0 / float(np.median(np.diff(log.trigger_s))), share=1.0, way="trigger")
+        return SpindleSpeed(rpm=60.0 / float(np.median(np.diff(log.trigger_s))), share=1.0, source="trigger")
     if log.spindle_angle_rad is not None and float(np.ptp(log.spindle_angle_rad)) > 2.0 * np.pi:
-        return SpindleSpeed(rpm=_speed_of(log.t_s, log.spindle_angle_rad), share=1.0, way="angle")
+        return SpindleSpeed(rpm=_speed_of(log.t_s, log.spindle_angle_rad), share=1.0, source="angle")
     return _from_spectrum(uniform(log), teeth, abs(expected_rpm))
 
 
 def _speed_of(t_s: FloatArray, angle_rad: FloatArray) -> float:
-    """Speed, rpm, over most of the samples: a spindle may stand at the ends of a log."""
+    """Speed, rpm, over most of the samples: the spindle may be stopped at the ends of a log."""
     ahead = max(1, len(t_s) // 200)
     speeds = np.abs(angle_rad[ahead:] - angle_rad[:-ahead]) / (t_s[ahead:] - t_s[:-ahead])
     return 60.0 * float(np.median(speeds)) / (2.0 * np.pi)
@@ -81,7 +81,7 @@ def _from_spectrum(log: ForceLog, teeth: int, expected_rpm: float) -> SpindleSpe
     share = _share(power, step, hz, log.rate_hz, n)
     if share < _LEAST_SHARE:
         return None
-    return SpindleSpeed(rpm=60.0 * hz / teeth, share=share, way="spectrum")
+    return SpindleSpeed(rpm=60.0 * hz / teeth, share=share, source="spectrum")
 
 
 def _refined(power: FloatArray, step: float, hz: float, rate_hz: float) -> float:

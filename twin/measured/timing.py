@@ -15,7 +15,7 @@ from twin.measured.log import GAP_INTERVALS, UNEVEN, UNEVEN_GAP, Channel, RawLog
 from twin.measured.settings import AS_IN_FILE, LogReading
 from twin.measured.units import ANGLE_NAME, TIME_NAME, find_unit, split_unit
 
-#: A given rate and the one of the time column may differ by so much before it is worth a note.
+#: A given rate and the one of the time column may differ by this much before it is worth a note.
 _SAME_RATE = 0.01
 #: Rates outside are a sign of a wrong unit of time.
 _PLAUSIBLE_HZ = (20.0, 1e7)
@@ -131,11 +131,11 @@ def _counted(
             f"{path}: no column of time among {', '.join(table.names)}; give the sampling rate by --rate HZ, "
             f"or names for the columns by --columns, e.g. {_example(table)}"
         )
-    told = "as given" if rate_hz else "as the file says"
+    origin = "as given" if rate_hz else "as in the file"
     if rate_hz and table.rate_hz and abs(rate_hz / table.rate_hz - 1.0) > _SAME_RATE:
-        told = f"as given; the file says {table.rate_hz:g} Hz"
+        origin = f"as given; the file has {table.rate_hz:g} Hz"
     n = len(table.values)
-    return table.start_s + np.arange(n) / rate, rate, np.ones(n, bool), [f"sampling rate {rate:g} Hz, {told}"]
+    return table.start_s + np.arange(n) / rate, rate, np.ones(n, bool), [f"sampling rate {rate:g} Hz, {origin}"]
 
 
 def _example(table: Table) -> str:
@@ -183,17 +183,17 @@ def _steady(
     if rate_hz is not None:
         return _at_rate(t_s, steps, rate_hz)
     if t_s[-1] <= t_s[0]:
-        raise MeasuredError(f"{path}: the time stands still at {t_s[0]:g} s, expected increasing time")
+        raise MeasuredError(f"{path}: the time does not increase at {t_s[0]:g} s, expected increasing time")
     if (steps == 0.0).any():
         rate = (len(t_s) - 1) / (t_s[-1] - t_s[0])
         if table.rate_hz and abs(rate / table.rate_hz - 1.0) < _SAME_RATE:
             rate = table.rate_hz
-        note = f"time column too coarse, {int((steps == 0.0).sum())} times stand twice: time counted at {rate:g} Hz"
+        note = f"time column too coarse, {int((steps == 0.0).sum())} times occur twice: time counted at {rate:g} Hz"
         return t_s[0] + np.arange(len(t_s)) / rate, float(rate), [note]
     rate = _rate_of(steps)
     notes = [f"sampling rate {rate:.6g} Hz, from the time column"]
     if table.rate_hz and abs(rate / table.rate_hz - 1.0) > _SAME_RATE:
-        notes.append(f"the file's header says {table.rate_hz:g} Hz")
+        notes.append(f"the file's header has {table.rate_hz:g} Hz")
     jitter = float(np.median(np.abs(steps - np.median(steps)))) * rate
     if jitter > 0.05:
         notes.append(f"uneven sampling: half of the intervals are off by more than {100.0 * jitter:.0f} %")
@@ -224,5 +224,5 @@ def _gap_notes(log: RawLog) -> list[str]:
     gaps = gaps_of(log.t_s, log.rate_hz)
     if not gaps:
         return []
-    told = ", ".join(f"{a:.4f} to {b:.4f} s" for a, b in gaps[:3])
-    return [f"{len(gaps)} gap{'s' if len(gaps) > 1 else ''} in the time: {told}{', ...' if len(gaps) > 3 else ''}"]
+    listed = ", ".join(f"{a:.4f} to {b:.4f} s" for a, b in gaps[:3])
+    return [f"{len(gaps)} gap{'s' if len(gaps) > 1 else ''} in the time: {listed}{', ...' if len(gaps) > 3 else ''}"]

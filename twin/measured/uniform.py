@@ -13,19 +13,19 @@ from twin.arrays import FloatArray, frozen
 from twin.errors import MeasuredError
 from twin.measured.log import Correction, ForceLog, vector
 
-#: Times may stand off an even grid by so much of an interval before the samples are interpolated to it.
+#: Times may deviate from an even grid by this part of an interval before the samples are interpolated to it.
 _EVEN = 0.02
 #: Largest numerator and denominator of a ratio of rates.
 _MOST_RATIO = 20000
 _PLAIN_RATIO = 64
-#: Samples of an even grid that may stand for each measured one.
+#: Largest number of samples of an even grid for each measured one.
 _MOST_FILL = 20
 
 
 def uniform(log: ForceLog) -> ForceLog:
     """The log on an even grid of its own rate; where it is uneven or has gaps, linear between its samples.
 
-    Gaps stay in ``gaps``: what is compared leaves them out.
+    Gaps stay in ``gaps``: comparisons omit them.
     """
     steps = np.diff(log.t_s) * log.rate_hz
     if np.abs(np.cumsum(steps - 1.0)).max(initial=0.0) < _EVEN:
@@ -100,7 +100,7 @@ def outside_gaps(log: ForceLog, t_s: FloatArray) -> np.ndarray[tuple[int], np.dt
 
 
 def richest(force_n: FloatArray, count: int) -> slice:
-    """The stretch of so many samples that holds most of the power; all of them where there are no more."""
+    """The stretch of ``count`` samples that holds most of the power; all of them where there are no more."""
     if len(force_n) <= count:
         return slice(0, len(force_n))
     power = np.concatenate([[0.0], np.cumsum(np.sum(force_n**2, axis=1))])

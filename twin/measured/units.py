@@ -59,7 +59,7 @@ _TAIL = re.compile(r"^(?P<base>.+?)[_ ](?P<unit>[^_ ]+)$")
 
 
 def find_unit(text: str) -> tuple[Quantity, float] | None:
-    """What a unit measures and its size in s, N, rad, N·m, V, Hz; None for text that is no unit known here."""
+    """Quantity and size of a unit in s, N, rad, N·m, V, Hz; None for text that is not a known unit."""
     bare = text.strip().strip("[](){}<>").strip().replace("µ", "u").replace("μ", "u")
     return _CASE.get(bare) or _UNITS.get(bare.lower())
 
@@ -83,7 +83,7 @@ def split_unit(header: str) -> tuple[str, str]:
 
 
 def _plausible(base: str, unit: str) -> bool:
-    """Whether the end of a name is a unit: ``Fx_min`` is no time, ``Motor_A`` no current."""
+    """Whether the end of a name is a unit: ``Fx_min`` is not a time, ``Motor_A`` not a current."""
     known = find_unit(unit)
     if known is None or known[0] == "other":
         return False
@@ -91,5 +91,5 @@ def _plausible(base: str, unit: str) -> bool:
 
 
 def is_unit_text(text: str) -> bool:
-    """Whether a field of a row below the names says a unit."""
+    """Whether a field of a row below the names is a unit."""
     return find_unit(text) is not None

@@ -16,16 +16,16 @@ _LEAST_SPREAD = 0.2
 _LEAST_SAMPLES = 10
 
 
-def shift_zero(log: ForceLog, offset_n: Sequence[float], where: str = "as given") -> ForceLog:
+def shift_zero(log: ForceLog, offset_n: Sequence[float], origin: str = "as given") -> ForceLog:
     """Subtract a constant.
 
     Args:
-        offset_n: x, y, z: what the log shows (as force on the tool, machine axes) where there is no force.
-        where: where the numbers come from, for people.
+        offset_n: x, y, z: reading of the log (as force on the tool, machine axes) without force.
+        origin: source of the numbers, human-readable.
     """
     zero = np.array([o if axis in log.axes else 0.0 for axis, o in zip(AXES, offset_n, strict=True)])
-    told = ", ".join(f"{axis} {o:.4g} N" for axis, o in zip(AXES, zero.tolist(), strict=True) if axis in log.axes)
-    done = Correction(kind="offset", text=f"offset {told} subtracted, {where}", values={"offset_n": zero.tolist()})
+    listed = ", ".join(f"{axis} {o:.4g} N" for axis, o in zip(AXES, zero.tolist(), strict=True) if axis in log.axes)
+    done = Correction(kind="offset", text=f"offset {listed} subtracted, {origin}", values={"offset_n": zero.tolist()})
     return _less(log, np.broadcast_to(zero, log.force_n.shape), done)
 
 
@@ -59,10 +59,10 @@ def remove_drift(log: ForceLog, air: Sequence[Gap]) -> ForceLog:
     middle = float(t_s.mean())
     slope, level = np.polyfit(t_s - middle, log.force_n[inside], 1)
     line = level + (log.t_s - middle)[:, None] * slope
-    told = ", ".join(f"{axis} {s:.3g} N/s" for axis, s in zip(AXES, slope.tolist(), strict=True) if axis in log.axes)
+    listed = ", ".join(f"{axis} {s:.3g} N/s" for axis, s in zip(AXES, slope.tolist(), strict=True) if axis in log.axes)
     done = Correction(
         kind="drift",
-        text=f"line through the air segments subtracted: {told}",
+        text=f"line through the air segments subtracted: {listed}",
         values={"drift_n_s": slope.tolist(), "level_n": level.tolist(), "at_s": middle},
     )
     return _less(log, line, done)
@@ -85,9 +85,9 @@ def _less(log: ForceLog, what: FloatArray, done: Correction) -> ForceLog:
 
 
 def _no_air(log: ForceLog, air: Sequence[Gap]) -> MeasuredError:
-    told = ", ".join(f"{a:.4f} to {b:.4f} s" for a, b in air) or "none"
+    listed = ", ".join(f"{a:.4f} to {b:.4f} s" for a, b in air) or "none"
     begin, end = log.span_s
     return MeasuredError(
-        f"{log.source}: no samples in the air segments ({told}), the log covers {begin:.4f} to {end:.4f} s; "
+        f"{log.source}: no samples in the air segments ({listed}), the log covers {begin:.4f} to {end:.4f} s; "
         "give the segment by --offset BEGIN:END on the log's clock, or the offset by --offset X,Y,Z"
     )

@@ -18,7 +18,7 @@ _UNITS = {"_mm_min": "MM/MIN", "_rpm": "RPM", "_deg": "DEG", "_hz": "HZ", "_mm":
 
 
 def key_of(field: FieldInfo) -> Key:
-    """What the field's annotation says of how it is shown."""
+    """The field's `Key`."""
     return next((note for note in field.metadata if isinstance(note, Key)), Key())
 
 
@@ -51,7 +51,7 @@ def option_names(name: str, field: FieldInfo) -> tuple[str, ...]:
 
 
 def default_text(field: FieldInfo) -> str | None:
-    """A field's default as TOML writes it, or what holds where it is not given; None for neither."""
+    """A field's default as TOML writes it, or its ``unset`` text; None for neither."""
     if field.is_required():
         return None
     value = field.get_default(call_default_factory=True)

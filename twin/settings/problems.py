@@ -62,7 +62,7 @@ def unknown(location: Location, keys: Iterable[str], tool: int | None = None) ->
 
 
 def key_path(location: Location) -> str:
-    """As people write it: ``tools[0].diameter_mm``."""
+    """Human-readable location: ``tools[0].diameter_mm``."""
     path = ""
     for key in location:
         path += f"[{key}]" if isinstance(key, int) else f".{key}" if path else key
@@ -76,7 +76,7 @@ def show(value: object) -> str:
 
 
 def problems_of(errors: Sequence[ErrorDetails], model: type[BaseModel]) -> Iterator[Problem]:
-    """What pydantic found, each mistake once.
+    """Mistakes that pydantic found, each once.
 
     Args:
         errors: from `ValidationError.errors`.
@@ -91,7 +91,7 @@ def problems_of(errors: Sequence[ErrorDetails], model: type[BaseModel]) -> Itera
 
 
 def _location(error: ErrorDetails) -> Location:
-    """Where a mistake is; a list that is too short is wrong itself, not its missing item."""
+    """Location of a mistake; a list that is too short is wrong itself, not its missing item."""
     location = error["loc"]
     if location[-1] == "[key]" or (error["type"] == "missing" and isinstance(location[-1], int)):
         return location[:-1]
@@ -117,7 +117,7 @@ def _problem(location: Location, error: ErrorDetails, model: type[BaseModel]) ->
 
 
 def _declared(location: Location, model: type[BaseModel]) -> tuple[Any, FieldInfo | None]:
-    """Type and field that a place is declared with; the field is None inside lists, and for the file as a whole."""
+    """Type and field that a location is declared with; the field is None inside lists, and for the file as a whole."""
     annotation: Any = model
     field: FieldInfo | None = None
     for key in location:
@@ -137,7 +137,7 @@ def _inner(annotation: Any) -> Any:
 
 
 def allowed(annotation: Any, notes: Iterable[Any] = ()) -> str:
-    """What a type takes, in words.
+    """Values that a type allows, in words.
 
     Args:
         notes: bounds that belong to it.

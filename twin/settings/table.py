@@ -20,12 +20,12 @@ class Table(BaseModel):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Key:
-    """How a key is shown to its users; stands in the field's annotation: ``Annotated[float, Key(unset="...")]``.
+    """Presentation of a key, part of the field's annotation: ``Annotated[float, Key(unset="...")]``.
 
     Attributes:
         options: names of the command line's option, a pair as ``--climb/--conventional``; made from the key if empty.
-        metavar: what stands for the option's value in the help; made from the key's unit if not given.
-        unset: what holds where the key is not given and has no default, e.g. ``0.4 of the diameter``.
+        metavar: placeholder of the option's value in the help; made from the key's unit if not given.
+        unset: effect of a key that is not given and has no default, e.g. ``0.4 of the diameter``.
         as_text: the option takes one text, which the field's validator reads.
     """
 

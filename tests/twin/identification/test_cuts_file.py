@@ -92,8 +92,8 @@ def test_defaults_hold_where_a_cut_is_silent_and_names_are_made_up() -> None:
         ({"mean_force_n": None}, "cuts[0] (cut ap1) has neither: expected one of log and mean_force_n"),
         ({"log": "a.csv"}, "cuts[0] (cut ap1) has log and mean_force_n: expected one of log and mean_force_n"),
         ({"mean_error_n": [1, 0, 1]}, "cuts[0].mean_error_n (cut ap1) = [1, 0, 1]: expected three numbers above 0"),
-        ({"window_s": [1.0, 2.0]}, "cuts[0].window_s (cut ap1) = [1.0, 2.0]: expected it only beside log"),
-        ({"lag_s": 1.0}, "cuts[0].lag_s (cut ap1) = 1.0: expected it only beside job"),
+        ({"window_s": [1.0, 2.0]}, "cuts[0].window_s (cut ap1) = [1.0, 2.0]: expected it only with log"),
+        ({"lag_s": 1.0}, "cuts[0].lag_s (cut ap1) = 1.0: expected it only with job"),
         ({"map": "q=Fx"}, "cuts[0].map (cut ap1) = \"q=Fx\": 'q=Fx' is not axis = column"),
         (
             {"log": "a.csv", "mean_force_n": None},
@@ -109,9 +109,9 @@ def test_defaults_hold_where_a_cut_is_silent_and_names_are_made_up() -> None:
         ),
         (
             {"log": "a.csv", "mean_force_n": None, "mean_error_n": [1, 1, 1]},
-            "cuts[0].mean_error_n (cut ap1) = [1, 1, 1]: expected it only beside mean_force_n",
+            "cuts[0].mean_error_n (cut ap1) = [1, 1, 1]: expected it only with mean_force_n",
         ),
-        ({"job": "job.toml"}, 'cuts[0].direction (cut ap1) = "slot": expected no such key beside job, which says it'),
+        ({"job": "job.toml"}, 'cuts[0].direction (cut ap1) = "slot": expected no such key with job'),
         ({"force_on": "table"}, 'cuts[0].force_on (cut ap1) = "table": expected one of "tool", "workpiece"'),
         ({"columns": 3}, "cuts[0].columns (cut ap1) = 3: expected a list of texts"),
     ],

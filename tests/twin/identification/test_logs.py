@@ -75,7 +75,7 @@ def test_zero_is_taken_off_as_asked(tmp_path: Path, zero: str) -> None:
     found = one_cut(tmp_path, SIDE, t, force + 10.0, window_s=[0.45, 0.85], zero=zero)
     off = found.measured.mean_n - SIDE.mean(SOME)
     assert off == pytest.approx([10.0 if zero == "none" else 0.0] * 3, abs=0.4)
-    word = "zero not corrected: as asked" if zero == "none" else "taken off, by air from"
+    word = "zero not corrected: as requested" if zero == "none" else "subtracted, by air from"
     assert any(word in note for note in found.measured.notes)
 
 

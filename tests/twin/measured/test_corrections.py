@@ -158,7 +158,7 @@ def test_spindle_speed_from_the_spectrum(rpm: float) -> None:
     found = spindle_speed(made(np.arange(10000) / RATE, wave + rng.normal(size=wave.shape)), 2, 3600.0)
     assert found is not None
     assert found.rpm == pytest.approx(rpm, abs=0.5)
-    assert found.way == "spectrum"
+    assert found.source == "spectrum"
 
 
 def test_noise_tells_no_speed() -> None:
@@ -169,7 +169,7 @@ def test_noise_tells_no_speed() -> None:
 def test_pulses_tell_the_speed_before_the_spectrum() -> None:
     log = replace(tone(120.0), trigger_s=frozen(np.arange(50) / 59.0, "trigger_s", (None,)))
     found = spindle_speed(log, 2, 3600.0)
-    assert found is not None and found.way == "trigger" and found.rpm == pytest.approx(3540.0)
+    assert found is not None and found.source == "trigger" and found.rpm == pytest.approx(3540.0)
 
 
 def test_the_steady_cut_is_found_by_the_log_itself() -> None:

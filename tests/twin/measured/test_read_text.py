@@ -132,7 +132,7 @@ def test_repeated_headers_are_passed_over(tmp_path: Path) -> None:
     text = "t,Fx,Fy,Fz\ns,N,N,N\n" + body(rows=ROWS[:2]) + "t,Fx,Fy,Fz\ns,N,N,N\n" + body(rows=ROWS[2:])
     log = read(tmp_path, text)
     np.testing.assert_allclose(log.force_n, WANT)
-    assert "repeated header at line 5, 6 passed over" in log.notes
+    assert "repeated header at line 5, 6 skipped" in log.notes
 
 
 def test_rows_without_a_number_are_left_out_and_make_a_gap(tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ def test_rows_without_a_number_are_left_out_and_make_a_gap(tmp_path: Path) -> No
     log = read(tmp_path, f"t,Fx,Fy,Fz\n{rows}")
     np.testing.assert_allclose(log.t_s, [0.0, 0.001, 0.004, 0.005])
     assert log.gaps == ((0.001, 0.004),)
-    assert any("2 rows without a number left out, the first at 0.0020 s" in n for n in log.notes)
+    assert any("2 rows without a number omitted, the first at 0.0020 s" in n for n in log.notes)
 
 
 def test_a_gap_in_the_time_is_told(tmp_path: Path) -> None:
@@ -156,14 +156,14 @@ def test_time_that_goes_back_is_refused_with_its_line(tmp_path: Path) -> None:
 
 
 def test_words_among_the_numbers_are_refused_with_their_line(tmp_path: Path) -> None:
-    with pytest.raises(MeasuredError, match=r"log.txt:4: 'overload' is no number, expected 4 numbers"):
+    with pytest.raises(MeasuredError, match=r"log.txt:4: 'overload' is not a number, expected 4 numbers"):
         read(tmp_path, "t,Fx,Fy,Fz\n" + body(rows=ROWS[:2]) + "0.002,overload,1,1\n" + body(rows=ROWS[3:]))
 
 
 def test_a_last_line_cut_short_is_passed_over(tmp_path: Path) -> None:
     log = read(tmp_path, "t,Fx,Fy,Fz\n" + body() + "0.004,1.")
     np.testing.assert_allclose(log.force_n, WANT)
-    assert "line 6, the last one, is cut short and passed over" in log.notes
+    assert "line 6, the last one, is cut short and skipped" in log.notes
 
 
 def test_coarse_times_are_counted(tmp_path: Path) -> None:

@@ -21,20 +21,20 @@ _MOST_LINES = 3
 
 
 def print_comparison(console: Console, found: Comparison) -> None:
-    """Print what was done, the errors as in the tri-slice paper's Table 6, and more of them."""
+    """Print the corrections, the errors as in the tri-slice paper's Table 6, and further errors."""
     title = Text(found.run.path.name, style="bold")
     title.append(f"  against  {found.log.source.name}", style="bold")
     console.print(title)
-    _section(console, "What was done to the log", _corrections(found))
+    _section(console, "Corrections of the log", _corrections(found))
     _section(console, "Errors of the simulated force on the tool, N", _errors(found))
-    _section(console, "In more detail, N", _details(found))
+    _section(console, "Further errors, N", _details(found))
     if any(w.lines for w in found.windows):
         _section(console, "Harmonics, amplitudes in N", _harmonics(found))
     console.print()
 
 
 def window_name(window: WindowResult, *, short: bool = False) -> str:
-    """``4.00–4.02 s``, and that it is the whole overlap; ``4.00–4.02`` where it is to be short."""
+    """``4.00–4.02 s``, with a mark if it is the whole overlap; ``4.00–4.02`` if short."""
     begin, end = window.span_s
     decimals = 3 if end - begin < 1.0 and (round(1e3 * begin) % 10 or round(1e3 * end) % 10) else 2
     text = f"{begin:.{decimals}f}–{end:.{decimals}f}"
@@ -69,7 +69,7 @@ def _corrections(found: Comparison) -> Table:
     for each in found.corrections:
         grid.add_row(each.kind, Text(each.text))
     if found.speed is not None:
-        grid.add_row("spindle", Text(f"{found.speed.rpm:.1f} rpm measured by its {found.speed.way}, not used"))
+        grid.add_row("spindle", Text(f"{found.speed.rpm:.1f} rpm measured by its {found.speed.source}, not used"))
     return grid
 
 

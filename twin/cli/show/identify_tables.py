@@ -29,9 +29,9 @@ _HOW = {
 def print_identified(console: Console, cuts: Cuts, result: Identified, *, verbose: bool) -> None:
     """Print a result."""
     fitted = sum(not cut.held_out for cut in result.cuts)
-    told = f", {result.evaluations} simulations of all cuts" if result.evaluations else ""
+    effort = f", {result.evaluations} simulations of all cuts" if result.evaluations else ""
     console.print(
-        f"{cuts.path.name}: {fitted} of {len(result.cuts)} cuts fitted, {_HOW[result.method]}{told}\n", markup=False
+        f"{cuts.path.name}: {fitted} of {len(result.cuts)} cuts fitted, {_HOW[result.method]}{effort}\n", markup=False
     )
     console.print(_coefficients(result))
     console.print(_quality(result), "\n", markup=False, sep="")
@@ -40,7 +40,7 @@ def print_identified(console: Console, cuts: Cuts, result: Identified, *, verbos
     console.print("\nMean force on the tool, N: measured, and measured less fitted (Δ)", style="bold")
     console.print(_cuts(result.cuts))
     if any(cut.measured.window_s for cut in result.cuts):
-        console.print("\nWhat the logs were taken for", style="bold")
+        console.print("\nEvaluation of the logs", style="bold")
         console.print(_logs(result.cuts))
     if verbose:
         for cut in result.cuts:

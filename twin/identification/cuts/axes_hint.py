@@ -13,12 +13,12 @@ from twin.identification.estimate import fit_linear, fixed_values
 from twin.identification.models.model import Model
 
 _AXES = "xyz"
-#: Part of the variation that axes must explain to be named.
+#: Part of the variation that axes must explain to be reported.
 _FITS = 0.97
 
 
 def other_axes(models: Sequence[Model], measured: Sequence[Measured]) -> str | None:
-    """The axes and signs under which mean forces fit best, told by those that the map gives; None where none fit.
+    """Axes and signs under which mean forces fit best, relative to those of the map; None where none fit.
 
     Only coefficients as metals have them count: tangential and radial ones above 0.
     """
@@ -40,8 +40,8 @@ def _tried(design: FloatArray, means: FloatArray) -> Iterator[tuple[float, str]]
                 continue
             left = float(np.sum((values - design @ found.values) ** 2))
             total = float(np.sum((values - values.mean()) ** 2))
-            told = ", ".join(
+            listed = ", ".join(
                 f"{axis} = {'-' if sign < 0.0 else ''}{_AXES[i]}"
                 for axis, i, sign in zip(_AXES, order, signs, strict=True)
             )
-            yield (1.0 - left / total if total > 0.0 else 0.0), told
+            yield (1.0 - left / total if total > 0.0 else 0.0), listed

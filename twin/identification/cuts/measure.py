@@ -1,4 +1,4 @@
-"""What a log says about one cut: mean force, its standard error, and the waveform over one revolution.
+"""Measurement of one cut from its log: mean force, its standard error, and the waveform over one revolution.
 
 Every choice (cut, air, zero, speed) is in the notes; each can be given in the file of cuts instead.
 """
@@ -23,14 +23,14 @@ from twin.measured.log import AXES, ForceLog
 from twin.measured.spindle import spindle_speed
 from twin.measured.steady import CutAndAir, Span, steady_part
 
-#: Multiples of the tooth-passing frequency in a waveform, if the file does not say.
+#: Multiples of the tooth-passing frequency in a waveform, unless the file gives them.
 _ORDERS = 12
 _MOST_HARMONICS = 60
 #: Highest multiple, in parts of the samples of one revolution; half of them is the Nyquist limit.
 _BELOW_NYQUIST = 0.4
 #: How notes of a speed that may be wrong begin.
 SPEED_DOUBT = "spindle speed in doubt"
-#: Fewer revolutions do not tell a speed within 1 %.
+#: Fewer revolutions do not determine a speed within 1 %.
 _LEAST_SPEED_TURNS = 8
 #: Times in a file are rounded by less than this part of their interval.
 _ROUNDED = 0.25
@@ -51,8 +51,8 @@ class Measured:
         rpm: spindle speed.
         window_s: the part of the log that was used.
         samples_per_rev: of the log.
-        zero_n, drift_n_s: shape (3,), what was taken off in the middle of the cut, and its change with time.
-        notes: what was found, one line each.
+        zero_n, drift_n_s: shape (3,), subtracted zero in the middle of the cut, and its change with time.
+        notes: results and choices, one line each.
     """
 
     mean_n: FloatArray
@@ -73,7 +73,7 @@ class Measured:
 
 
 def given_mean(cut: Cut, rpm: float) -> Measured:
-    """A cut whose mean force is in the file.
+    """A cut with its mean force in the file.
 
     Raises:
         MeasuredError: an axis map of unknown columns.
@@ -132,7 +132,7 @@ def measure(
     Args:
         rpm: spindle speed as given.
         seems: speed that is found in the simulated force of this window, in parts of the true one: where the engagement
-            changes the force runs ahead of the spindle or behind it.
+            changes the force leads or lags the spindle.
 
     Raises:
         IdentifyError: less than a revolution in the window.
@@ -144,10 +144,10 @@ def measure(
     f = log.force_n[inside] - zero.at(t)
     samples = log.rate_hz * 60.0 / rpm
     if samples > 2.5 * teeth:
-        rpm, told = _speed(
+        rpm, more = _speed(
             replace(log, t_s=t, force_n=f, spindle_angle_rad=None, trigger_s=None), rpm, teeth, fit, seems
         )
-        notes += told
+        notes += more
     mean, error, used = _mean(t, f, 60.0 / rpm)
     measured = np.array([axis in log.axes for axis in AXES])
     count = harmonic_count(fit, teeth, rpm, samples)
@@ -197,7 +197,7 @@ def _inside(log: ForceLog, window: Span, rpm: float) -> NDArray[np.bool_]:
 
 
 def _speed(log: ForceLog, rpm: float, teeth: int, fit: Fit, seems: float) -> tuple[float, list[str]]:
-    """The speed of the waveform in a window; the given one where that is asked, or where none near it stands out."""
+    """The speed of the waveform in a window; the given one if requested, or where none near it stands out."""
     if log.duration_s < _LEAST_SPEED_TURNS * 60.0 / rpm:
         return rpm, [f"spindle speed {rpm:g} rpm as given: too few revolutions to find it"]
     seen = spindle_speed(log, teeth, rpm)
@@ -246,12 +246,12 @@ class _Zero:
 
 
 def _zero(cut: Cut, log: ForceLog, found: CutAndAir, middle_s: float, revolution_s: float) -> _Zero:
-    """What is taken off the force."""
+    """The zero that is subtracted from the force."""
     spans = cut.air_s if cut.air_s is not None else found.air_s
     if cut.zero == "none" or not spans:
         if cut.zero in ("line", "constant"):
             raise IdentifyError(f'{log.source}: no air found for zero = "{cut.zero}"; give air_s = [[from, to], ...]')
-        why = "as asked" if cut.zero == "none" else "no air found"
+        why = "as requested" if cut.zero == "none" else "no air found"
         return _Zero(middle_s, np.zeros(3), np.zeros(3), np.zeros(3), f"zero not corrected: {why}")
     t, f = _block_means(log, spans, revolution_s)
     around = min(a for a, _ in spans) < middle_s < max(b for _, b in spans)
@@ -262,8 +262,8 @@ def _zero(cut: Cut, log: ForceLog, found: CutAndAir, middle_s: float, revolution
     variance = ((f - basis @ k) ** 2).sum(axis=0) / freedom if freedom > 0 else np.zeros(3)
     error = np.sqrt(variance * np.linalg.pinv(basis.T @ basis)[0, 0])
     drift = k[1] if line else np.zeros(3)
-    told = f"zero {_listed(k[0], 2)} N" + (f", drift {_listed(drift, 3)} N/s" if line else "")
-    return _Zero(middle_s, k[0], drift, error, f"{told} taken off, by {_told(spans)}")
+    text = f"zero {_listed(k[0], 2)} N" + (f", drift {_listed(drift, 3)} N/s" if line else "")
+    return _Zero(middle_s, k[0], drift, error, f"{text} subtracted, by {_listed_air(spans)}")
 
 
 def _listed(values: FloatArray, digits: int) -> str:
@@ -282,9 +282,9 @@ def _block_means(log: ForceLog, spans: Iterable[Span], revolution_s: float) -> t
                 times.append(float(log.t_s[a:b].mean()))
                 means.append(log.force_n[a:b].mean(axis=0))
     if not times:
-        raise MeasuredError(f"{log.source}: no samples in air_s, {_told(spans)}")
+        raise MeasuredError(f"{log.source}: no samples in air_s, {_listed_air(spans)}")
     return np.array(times), np.array(means)
 
 
-def _told(spans: Iterable[Span]) -> str:
+def _listed_air(spans: Iterable[Span]) -> str:
     return "air from " + " and ".join(f"{a:.3f} to {b:.3f} s" for a, b in spans)

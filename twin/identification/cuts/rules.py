@@ -1,4 +1,4 @@
-"""Rules between the keys of a file of test cuts, and between the file and the files beside it."""
+"""Rules between the keys of a file of test cuts, and between the file and the files it names."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class CutFacts:
         self._index = index
 
     def at(self, key: str) -> Location:
-        """Where a key stands: in the cut, or in the defaults."""
+        """Location of a key: in the cut, or in the defaults."""
         own = ("cuts", self._index, key)
         return own if self.given(key) or not self._facts.given("defaults", key) else ("defaults", key)
 
@@ -90,7 +90,7 @@ def engagement_given(facts: Facts, _folder: Path) -> Iterator[Problem]:
         if cut.given("job"):
             for key in (*_GEOMETRY, "radial_depth_mm"):
                 if cut.given(key):
-                    yield wrong(cut.at(key), cut.get(key), "no such key beside job, which says it")
+                    yield wrong(cut.at(key), cut.get(key), "no such key with job")
             continue
         for key in _GEOMETRY:
             if cut.absent(key):
@@ -127,12 +127,12 @@ def one_measurement(facts: Facts, _folder: Path) -> Iterator[Problem]:
         elif given == ["mean_force_n"]:
             for key in _LOG_KEYS:
                 if cut.given(key):
-                    yield wrong(cut.at(key), cut.get(key), "it only beside log")
+                    yield wrong(cut.at(key), cut.get(key), "it only with log")
         elif cut.given("mean_error_n"):
-            yield wrong(cut.at("mean_error_n"), cut.get("mean_error_n"), "it only beside mean_force_n")
+            yield wrong(cut.at("mean_error_n"), cut.get("mean_error_n"), "it only with mean_force_n")
         for key in _RUN_KEYS:
             if cut.given(key) and not cut.given("job"):
-                yield wrong(cut.at(key), cut.get(key), "it only beside job")
+                yield wrong(cut.at(key), cut.get(key), "it only with job")
 
 
 def errors_above_zero(facts: Facts, _folder: Path) -> Iterator[Problem]:

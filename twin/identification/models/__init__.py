@@ -1,1 +1,1 @@
-"""What a test cut's forces are for unit coefficients."""
+"""Models: forces of a test cut for unit coefficients."""

@@ -117,7 +117,7 @@ class JobModel:
         return np.asarray(self.force_n.sum(axis=0) / self.samples)
 
     def harmonics(self, count: int, runout_mm: FloatArray | None = None) -> ComplexArray:  # noqa: ARG002
-        """See `Model`; the runout is the job's, whatever is asked."""
+        """See `Model`; the runout is the job's, not the given one."""
         turn = np.exp(-1j * np.outer(np.arange(count + 1), self.angle_rad))
         c = np.tensordot(turn, self.force_n, axes=(1, 0)) * (2.0 / self.samples)
         c[0] *= 0.5
@@ -138,8 +138,8 @@ def replay_units(path: Path) -> JobRun:
     if not cutting:
         raise IdentifyError(f"{path}: this job cuts nothing, expected a test cut")
     if len(tools) > 1 or max(speeds) - min(speeds) > _SAME_SPEED or min(speeds) <= 0.0:
-        told = f"tools {sorted(tools)} at {', '.join(f'{s:g}' for s in sorted(speeds))} rpm"
-        raise IdentifyError(f"{path}: this job cuts with {told}; expected one tool at one speed, M3")
+        listed = f"tools {sorted(tools)} at {', '.join(f'{s:g}' for s in sorted(speeds))} rpm"
+        raise IdentifyError(f"{path}: this job cuts with {listed}; expected one tool at one speed, M3")
     tool, rpm = job.tool(cutting[0].tool), cutting[0].spindle_rpm
     samples = [s.samples for s in steps]
     forces = [_forces(steps), *(_forces(_replayed(_with_unit(job, k))[1]) for k in range(1, len(NAMES)))]

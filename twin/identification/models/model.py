@@ -1,4 +1,4 @@
-"""What a cut's forces are for unit coefficients: mean and multiples of the spindle frequency."""
+"""Forces of a cut for unit coefficients: mean and multiples of the spindle frequency."""
 
 from __future__ import annotations
 

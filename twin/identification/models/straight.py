@@ -37,7 +37,7 @@ class StraightPass:
     Attributes:
         shape: the tool's meridian; its height is at least the axial depth.
         helix_deg: helix angle, right hand positive.
-        pitch_rad: shape (teeth,), angle of each tooth behind tooth 0.
+        pitch_rad: shape (teeth,), angle by which each tooth trails tooth 0.
         runout_mm, runout_rad: see `twin.tools.edges.CuttingEdges`.
         axial_depth_mm: height of the stock's top above the tip.
         strip_mm: y that the stock fills, measured from the cutter's axis; infinite where it has no end.
@@ -63,7 +63,7 @@ def strip_of(direction: Direction, nominal_radius_mm: float, radial_depth_mm: fl
 
 
 def reach_mm(cut: StraightPass) -> float:
-    """How far the farthest engaged point lies before the cutter's axis."""
+    """Distance of the farthest engaged point ahead of the cutter's axis."""
     radius = float(cut.shape.radius_mm(cut.axial_depth_mm))
     nearest = max(cut.strip_mm[0], -cut.strip_mm[1], 0.0)
     return math.sqrt(max(0.0, radius**2 - nearest**2))

@@ -17,7 +17,7 @@ from twin.measured.axes import guess_map
 from twin.measured.formats.table import Table, table
 from twin.measured.units import find_unit, split_unit
 
-#: A matrix with more columns than this is no log.
+#: A matrix with more columns than this is not a log.
 _MOST_COLUMNS = 64
 _RATE = re.compile(
     r"^(?:fs|f_s|sampl\w*[\s_]*(?:rate|freq\w*)|samplerate|rate|frequency|abtastrate|srate|sr)$", re.IGNORECASE
@@ -30,7 +30,7 @@ _START = re.compile(r"^(?:t0|t_0|start|wf_start_offset|start_?time)$", re.IGNORE
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """An array with its path in the container, ``group/name``, and its unit, ``""`` if not told."""
+    """An array with its path in the container, ``group/name``, and its unit, ``""`` if not stated."""
 
     name: str
     unit: str
@@ -43,7 +43,7 @@ def columns_table(
     """Choose the arrays that are columns of one recording.
 
     Args:
-        scalars: single numbers beside them, by path; a sampling rate or interval is looked for among them.
+        scalars: single numbers next to them, by path; a sampling rate or interval is searched among them.
         group: part of the container to read; None for all of it.
 
     Raises:
@@ -124,7 +124,7 @@ def _clock(scalars: Mapping[str, float]) -> tuple[float | None, float]:
 
 
 def flatten(data: Any, prefix: str, arrays: list[Named], scalars: dict[str, float]) -> None:
-    """Nested mappings as arrays and single numbers by path; what is no number is passed over."""
+    """Nested mappings as arrays and single numbers by path; other values are skipped."""
     if isinstance(data, Mapping):
         for key, value in data.items():
             flatten(value, f"{prefix}/{key}" if prefix else str(key), arrays, scalars)

@@ -39,7 +39,7 @@ def read_lvm(path: Path) -> Table:
     """All segments one after the other.
 
     Raises:
-        MeasuredError: a line that is no row, segments with other channels, one time column for each channel.
+        MeasuredError: a line that is not a row, segments with other channels, one time column for each channel.
     """
     lines = text_of(path).splitlines()
     delimiter, decimal, x_columns = _settings(lines)
@@ -107,7 +107,7 @@ def _segments(path: Path, lines: Sequence[str], delimiter: str, decimal: str) ->
 
 
 def _body_end(lines: Sequence[str], start: int, limit: int) -> int:
-    """Where a segment's rows end: the next segment's header begins with ``Channels``."""
+    """End of a segment's rows: the next segment's header begins with ``Channels``."""
     return next((i for i in range(start, limit) if lines[i].startswith("Channels")), limit)
 
 
@@ -129,7 +129,7 @@ def _segment(
         values = [number(f, decimal) for f in fields] + [math.nan] * (len(names) - len(fields))
         if None in values:
             bad = fields[values.index(None)]
-            raise MeasuredError(f"{path}:{index + 1}: {bad!r} is no number, expected {len(names)} numbers")
+            raise MeasuredError(f"{path}:{index + 1}: {bad!r} is not a number, expected {len(names)} numbers")
         segment.rows.append([v for v in values if v is not None])
         segment.lines.append(index + 1)
     return segment

@@ -42,7 +42,7 @@ def _run(path: Path) -> Table:
 
 
 def _air_filled(rows: FloatArray) -> FloatArray:
-    """A run's samples with those added that it leaves out where nothing is cut: no force, the angle going on.
+    """A run's samples, with those added that it omits where nothing is cut: no force, the angle continued.
 
     Args:
         rows: shape (n, 5): time, forces, angle.

@@ -12,7 +12,7 @@ from twin.measured.formats.table import Table, table
 
 
 def read_parquet(path: Path) -> Table:
-    """Columns of numbers and of time; a column's unit may stand in its metadata as ``unit``.
+    """Columns of numbers and of time; a column's unit may be in its metadata as ``unit``.
 
     Raises:
         MeasuredError: no Parquet file, or no columns of numbers.
@@ -35,7 +35,7 @@ def read_parquet(path: Path) -> Table:
 
 
 def _numbers(column: Any, kind: Any) -> tuple[Any, str]:
-    """Values as floats, and the unit where the type says it; None for text."""
+    """Values as floats, and the unit where the type states it; None for text."""
     import pyarrow as pa
     import pyarrow.compute as pc
 

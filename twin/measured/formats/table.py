@@ -1,4 +1,4 @@
-"""What every reader of a format gives: columns of numbers and what the file says of them."""
+"""Result of every reader of a format: columns of numbers, their names and units."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Table:
 
     Attributes:
         names: of the columns, as in the file.
-        units: of the columns where the file says them apart from the names, else ``""``.
+        units: of the columns where the file states them apart from the names, else ``""``.
         values: shape (n, k); NaN where there is no number.
         rows: shape (n,), line or row number in the file of each row, counted from 1.
         row_word: what ``rows`` counts: ``line``, ``row``, ``sample``.
@@ -61,8 +61,8 @@ def table(
         raise MeasuredError(f"{path}: no column of numbers found, expected a time and forces ({format_name})")
     lengths = {name: len(values) for name, _, values in columns}
     if len(set(lengths.values())) > 1:
-        told = ", ".join(f"{name} {n}" for name, n in lengths.items())
-        raise MeasuredError(f"{path}: columns of different length: {told}; choose columns of one length by --columns")
+        listed = ", ".join(f"{name} {n}" for name, n in lengths.items())
+        raise MeasuredError(f"{path}: columns of different length: {listed}; choose columns of one length by --columns")
     values = np.column_stack([values.astype(np.float64) for _, _, values in columns])
     return Table(
         format=format_name,

@@ -40,8 +40,8 @@ def read_tdms(path: Path, group: str | None = None) -> Table:
                 increments[name] = float(channel.properties["wf_increment"])
                 starts.append(float(channel.properties.get("wf_start_offset", 0.0)))
     if len({round(i, 12) for i in increments.values()}) > 1:
-        told = ", ".join(f"{name} {1.0 / i:g} Hz" for name, i in increments.items() if i > 0.0)
-        raise MeasuredError(f"{path}: channels at several rates: {told}; choose a group of one rate by --group")
+        listed = ", ".join(f"{name} {1.0 / i:g} Hz" for name, i in increments.items() if i > 0.0)
+        raise MeasuredError(f"{path}: channels at several rates: {listed}; choose a group of one rate by --group")
     scalars = {"wf_increment": next(iter(increments.values())), "t0": starts[0]} if increments else {}
     return columns_table(path, "TDMS", arrays, scalars, group)
 

@@ -123,13 +123,13 @@ class _Body:
         return np.array(values, np.float64), np.array(rows, np.int64)
 
     def notes(self) -> list[str]:
-        """What was passed over."""
-        told = []
+        """Notes on skipped lines."""
+        notes = []
         if self._repeated:
-            told.append(f"repeated header at line {', '.join(map(str, self._repeated[:5]))} passed over")
+            notes.append(f"repeated header at line {', '.join(map(str, self._repeated[:5]))} skipped")
         if self._cut_row is not None:
-            told.append(f"line {self._cut_row}, the last one, is cut short and passed over")
-        return told
+            notes.append(f"line {self._cut_row}, the last one, is cut short and skipped")
+        return notes
 
     def _fast(self, lines: Sequence[str]) -> FloatArray | None:
         """All rows at once where every one is plain; None where they must be looked at one by one."""
@@ -165,7 +165,7 @@ class _Body:
 
     def _wrong(self, line: str, index: int, fields: Sequence[str]) -> MeasuredError:
         bad = next((f for f in fields if number(f, self.layout.decimal) is None), None)
-        what = f"{bad!r} is no number" if bad is not None else f"{len(fields)} fields"
+        what = f"{bad!r} is not a number" if bad is not None else f"{len(fields)} fields"
         return MeasuredError(
             f"{self.path}:{index + self.first_line}: {what}, expected {self.layout.width} numbers: {_cut(line)!r}"
         )

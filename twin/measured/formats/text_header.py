@@ -1,4 +1,4 @@
-"""The lines above the numbers: names, a row of units, what is said of the sampling rate."""
+"""The lines above the numbers: names, a row of units, the sampling rate."""
 
 from __future__ import annotations
 
@@ -90,11 +90,11 @@ def _units_row(above: Sequence[list[str]], layout: Layout) -> list[str] | None:
     if not above or len(above[-1]) > layout.width:
         return None
     row = above[-1]
-    told = [f for f in row if f not in ("", "-", "[]", "[-]", "()")]
-    known = sum(is_unit_text(f) or f[:1] in "[(" for f in told)
+    stated = [f for f in row if f not in ("", "-", "[]", "[-]", "()")]
+    known = sum(is_unit_text(f) or f[:1] in "[(" for f in stated)
     named_above = len(above) > 1 and _is_names(above[-2], layout)
-    needed = 0.5 * len(told) if named_above else len(told)
-    if not told or known < needed or any(find_unit(f) is None and len(f) > 8 for f in row):
+    needed = 0.5 * len(stated) if named_above else len(stated)
+    if not stated or known < needed or any(find_unit(f) is None and len(f) > 8 for f in row):
         return None
     return [f.strip("[](){}<> ") for f in row] + [""] * (layout.width - len(row))
 
@@ -124,7 +124,7 @@ def _distinct(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def stated_rate_hz(lines: Sequence[str]) -> float | None:
-    """A sampling rate, or the inverse of an interval, said in words above the numbers."""
+    """A sampling rate, or the inverse of an interval, stated in words above the numbers."""
     for line in lines:
         if found := _RATE.search(line):
             scale = 1e3 if (found["unit1"] or found["unit2"] or "").lower() == "khz" else 1.0

@@ -1,4 +1,4 @@
-"""How a text file is laid out: delimiter, decimal mark, first line of numbers. Found by trying, never by suffix."""
+"""Layout of a text file: delimiter, decimal mark, first line of numbers. Found by trials, never by suffix."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-#: Delimiters that are tried, None for any white space; commas with a blank behind them may stand beside decimal commas.
+#: Delimiters that are tried, None for any white space; commas followed by a blank may occur with decimal commas.
 _DELIMITERS = ("\t", ";", "|", ",", None)
 _TRIED_LINES = 400
 _MISSING = frozenset(
@@ -41,7 +41,7 @@ _CLOCK = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """How fields are set apart.
+    """Separation of fields.
 
     Attributes:
         delimiter: None for white space.
@@ -57,7 +57,7 @@ class Layout:
 
 
 def fields_of(line: str, delimiter: str | None) -> list[str]:
-    """A line's fields without blanks and quotes; empty fields behind the last one are dropped."""
+    """A line's fields without blanks and quotes; empty fields after the last one are dropped."""
     if delimiter is None:
         return line.split()
     if '"' in line:
@@ -135,7 +135,7 @@ def _try(lines: Sequence[str], delimiter: str | None, decimal: str) -> tuple[int
 
 
 def _first_row(lines: Sequence[str], delimiter: str | None, decimal: str, width: int) -> int:
-    """The first row of numbers that has another one behind it: a row of settings may stand above the names."""
+    """The first row of numbers that is followed by another one: a row of settings may be above the names."""
     first, latest, before = -1, -1, False
     for index, line in enumerate(lines):
         fields = fields_of(line, delimiter)
