@@ -7,13 +7,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from twin.errors import JobError
-from twin.job.facts import Facts
 from twin.job.model import Job, JobFile
 from twin.job.rules import RULES
-from twin.settings.problems import Location, Problem, problems_of
+from twin.settings.facts import Facts
+from twin.settings.problems import Problem, problems_of
 from twin.settings.toml_file import read_toml
 from twin.settings.toml_text import toml_text
 
@@ -52,7 +52,7 @@ def _job(data: Mapping[str, Any], path: Path, text: str) -> Job:
         JobFile.model_validate(data)
     except ValidationError as error:
         problems += problems_of(error.errors(include_url=False), JobFile)
-    facts = Facts(data, [p.location for p in problems], _default)
+    facts = Facts(data, [p.location for p in problems], JobFile)
     problems = [_with_tool(p, facts) for p in problems]
     problems += [problem for rule in RULES for problem in rule(facts, path.parent)]
     if problems:
@@ -65,18 +65,6 @@ def _with_tool(problem: Problem, facts: Facts) -> Problem:
     if problem.location[:1] != ("tools",) or len(problem.location) < 3 or problem.location[2] == "number":
         return problem
     return Problem(problem.location, problem.text, facts.get("tools", problem.location[1], "number"))
-
-
-def _default(location: Location) -> Any:
-    """Value of a key that is not given; None where it has no default."""
-    table: type[BaseModel] = JobFile
-    for key in location[:-1]:
-        annotation = table.model_fields[str(key)].annotation if key in table.model_fields else None
-        if not isinstance(annotation, type) or not issubclass(annotation, BaseModel):
-            return None
-        table = annotation
-    field = table.model_fields.get(str(location[-1]))
-    return None if field is None or field.is_required() else field.default
 
 
 def _joined(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeAlias
 
-from twin.job.facts import Facts
+from twin.job.facts import tools_of
 from twin.job.model import STOCKS
 from twin.job.tool_rules import TOOL_RULES
+from twin.settings.facts import Facts
 from twin.settings.problems import Problem, wrong
 
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
@@ -71,7 +72,7 @@ def some_tool(facts: Facts, _folder: Path) -> Iterator[Problem]:
 def tool_numbers_differ(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """No two tools have one number."""
     first: dict[int, int] = {}
-    for index, tool in enumerate(facts.tools()):
+    for index, tool in enumerate(tools_of(facts)):
         if tool.number is None:
             continue
         if tool.number in first:
@@ -82,14 +83,14 @@ def tool_numbers_differ(facts: Facts, _folder: Path) -> Iterator[Problem]:
 
 def tools_are_sound(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """The rules between the keys of one tool."""
-    for tool in facts.tools():
+    for tool in tools_of(facts):
         for rule in TOOL_RULES:
             yield from rule(tool)
 
 
 def first_tool_known(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """The tool in the spindle at the start is among the tools."""
-    number, tools = facts.get("program", "tool"), list(facts.tools())
+    number, tools = facts.get("program", "tool"), list(tools_of(facts))
     known = [tool.number for tool in tools]
     if number and None not in known and number not in known:
         yield wrong(("program", "tool"), number, f"0 or the number of a tool: {', '.join(map(str, known))}")
@@ -98,7 +99,7 @@ def first_tool_known(facts: Facts, _folder: Path) -> Iterator[Problem]:
 def pitch_below_tools(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """A tool thinner than the distance of the slices would pass between them."""
     pitch = facts.get("simulation", "slice_pitch_mm")
-    sizes = [(d, tool.number) for tool in facts.tools() if (d := tool.get("diameter_mm")) is not None]
+    sizes = [(d, tool.number) for tool in tools_of(facts) if (d := tool.get("diameter_mm")) is not None]
     if pitch is None or not sizes:
         return
     thinnest, number = min(sizes, key=lambda size: size[0])

@@ -8,12 +8,12 @@ from typing import Annotated, Any, Literal, TypeAlias
 import typer
 from pydantic import BaseModel
 
-File: TypeAlias = Literal["job", "mold", "paths", "reach", "verify"]
+File: TypeAlias = Literal["job", "cuts", "mold", "paths", "reach", "verify"]
 
 
 def schema(
     file: Annotated[
-        File, typer.Argument(help="File to describe: a job, a mold job, or the settings of a command.")
+        File, typer.Argument(help="File to describe: a job, test cuts, a mold job, or the settings of a command.")
     ] = "job",
 ) -> None:
     """Print the JSON Schema of a job file or settings file, for editors that complete and check TOML."""
@@ -21,6 +21,7 @@ def schema(
 
 
 def _schema(file: File) -> dict[str, Any]:
+    from twin.identification.cuts.cuts_file import CutsFile
     from twin.moldmaking.model import MoldFile
     from twin.planning.settings import PathSettings, ReachSettings
     from twin.settings.schema import toml_schema
@@ -30,11 +31,11 @@ def _schema(file: File) -> dict[str, Any]:
         from twin.job import job_schema
 
         return job_schema()
-    models: dict[str, type[BaseModel]] = {
-        "mold": MoldFile,
-        "paths": PathSettings,
-        "reach": ReachSettings,
-        "verify": VerifySettings,
+    models: dict[str, tuple[type[BaseModel], str]] = {
+        "cuts": (CutsFile, "Test cuts of a machining twin"),
+        "mold": (MoldFile, "Mold job of a machining twin"),
+        "paths": (PathSettings, "Settings of twin paths"),
+        "reach": (ReachSettings, "Settings of twin reach"),
+        "verify": (VerifySettings, "Settings of twin verify"),
     }
-    title = "Mold job of a machining twin" if file == "mold" else f"Settings of twin {file}"
-    return toml_schema(models[file], title)
+    return toml_schema(*models[file])

@@ -8,13 +8,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from twin.errors import CutsError
 from twin.identification.cuts.cuts_file import Cuts, CutsFile
 from twin.identification.cuts.rules import RULES
-from twin.job.facts import Facts
-from twin.settings.problems import Location, Problem, problems_of, wrong
+from twin.settings.facts import Facts
+from twin.settings.problems import Problem, problems_of, wrong
 from twin.settings.toml_file import read_toml
 
 #: What `load_cuts` changes in ``[fit]`` unless more is given.
@@ -54,7 +54,7 @@ def cuts_from_dict(data: Mapping[str, Any], path: str | PathLike[str], fit: Mapp
         CutsFile.model_validate(data)
     except ValidationError as error:
         problems += problems_of(error.errors(include_url=False), CutsFile)
-    facts = Facts(data, [p.location for p in problems], _default)
+    facts = Facts(data, [p.location for p in problems], CutsFile, _NO_DEFAULT)
     problems += [problem for rule in RULES for problem in rule(facts, path.parent)]
     problems += _names(facts)
     if problems:
@@ -107,27 +107,6 @@ def _with_name(problem: Problem, facts: Facts) -> Problem:
             name = facts.get("cuts", index, "name")
             return Problem(problem.location, f" (cut {name}){problem.text}") if name else problem
     return problem
-
-
-def _default(location: Location) -> Any:
-    """Value of a key that is not given; None where it has no default."""
-    if location in _NO_DEFAULT:
-        return None
-    table: Any = CutsFile
-    for key in location[:-1]:
-        if isinstance(key, int):
-            continue
-        annotation = table.model_fields[key].annotation if key in table.model_fields else None
-        inner = next((a for a in (annotation, *getattr(annotation, "__args__", ())) if _is_table(a)), None)
-        if inner is None:
-            return None
-        table = inner
-    field = table.model_fields.get(str(location[-1]))
-    return None if field is None or field.is_required() or field.default_factory else field.default
-
-
-def _is_table(annotation: Any) -> bool:
-    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
 
 
 def _joined(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:

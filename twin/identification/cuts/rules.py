@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from twin.job.facts import Facts, ToolFacts
+from twin.job.facts import ToolFacts
 from twin.job.tool_rules import TOOL_RULES
+from twin.settings.facts import Facts
 from twin.settings.problems import Location, Problem, missing, wrong
 
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
