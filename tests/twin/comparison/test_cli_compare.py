@@ -121,6 +121,25 @@ def test_the_jobs_measured_table_is_used(tmp_path: Path, capsys: pytest.CaptureF
     assert "no log given, and its job has no measured.file" in failed(capsys, plain)
 
 
+def test_a_batch_reads_and_corrects_as_the_options_do(
+    archive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = np.column_stack([log_of(TOOL).t_s, log_of(TOOL).force_n])
+    text = "\n".join("\t".join(f"{v:.6f}".replace(".", ",") for v in row) for row in rows.tolist())
+    (tmp_path / "dyno.txt").write_text(text)
+    columns = '"t_s,Fx_N,Fy_N,Fz_N"'
+    (tmp_path / "t.csv").write_text(
+        "run,measured,columns,delimiter,decimal,notches,causal,lag_s\n"
+        f'run.mcap,dyno.txt,{columns},tab,",",700 900:20,true,0\n'
+    )
+    assert run(["compare", "--batch", str(tmp_path / "t.csv"), "--json"]) == 0
+    by_table = json.loads(capsys.readouterr().out)[0]["comparison"]
+    options = ("--columns", "t_s,Fx_N,Fy_N,Fz_N", "--delimiter", "tab", "--decimal", ",", "--causal", "--lag", 0)
+    by_options = compared(capsys, archive, tmp_path / "dyno.txt", *options, "--notch", "700", "--notch", "900:20")
+    assert by_table == by_options
+    assert [c["kind"] for c in by_table["corrections"]] == ["notch", "notch", "lag"]
+
+
 def test_a_run_against_a_run(archive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found = compared(capsys, archive, shutil.copy(archive, tmp_path / "other.mcap"))
     assert found["lag_s"] == pytest.approx(0.0, abs=1e-6) and found["correlation"] > 0.9999
