@@ -23,7 +23,7 @@ from gcode.compensation.planar import Segment, dot
 from gcode.errors import GcodeError, Place
 from gcode.events import Block, Event, LinearMotion, Motion, Notice, Point
 
-#: Blocks without motion in the plane that the control can read over and still find the next motion.
+#: Blocks without motion in the plane that the control can skip and still find the next motion.
 BLOCKS_READ_OVER = 2
 #: A compensated motion may be reversed by this length, mm, through rounding.
 _ROUNDING_MM = 1e-6
@@ -212,9 +212,9 @@ def _in_direction(waiting: Waiting, made: Segment) -> None:
     segment, radius = waiting.segment, abs(waiting.offset)
     if made.centre is None:
         if dot(segment.direction_out, made.end - made.start) < -_ROUNDING_MM:
-            raise gouge(segment, radius, "interference: the compensated motion runs against the programmed one")
+            raise gouge(segment, radius, "interference: the compensated motion opposes the programmed one")
     elif abs(made.sweep_rad) > abs(segment.sweep_rad) + _ROUNDING_RAD:
-        raise gouge(segment, radius, "interference: the compensated arc runs against the programmed one")
+        raise gouge(segment, radius, "interference: the compensated arc opposes the programmed one")
 
 
 def _arc_refused(segment: Segment, what: str) -> GcodeError:
@@ -225,7 +225,7 @@ def _arc_refused(segment: Segment, what: str) -> GcodeError:
 
 def _blind(waiting: Waiting, blocks: int) -> Notice:
     text = (
-        f"{blocks} blocks without motion in the plane of compensation follow, {BLOCKS_READ_OVER} are read over: "
+        f"{blocks} blocks without motion in the plane of compensation follow, {BLOCKS_READ_OVER} are skipped: "
         "the tool ends off the offset path of this block, which may gouge or leave material at the corner"
     )
     return Notice(place=waiting.segment.motion.place, code="compensation-look-ahead", text=text)

@@ -87,7 +87,7 @@ class LinuxCncCompensation(Compensation):
     def cancel(self, motion: Motion) -> tuple[Event, ...]:
         """Ends with a motion; see `gcode.compensation.cancel`."""
         if not isinstance(motion, LinearMotion):
-            problem = "an arc as the motion that leaves cutter compensation"
+            problem = "an arc as the exit from cutter compensation"
             raise GcodeError(motion.place, "compensation-arc-exit", problem, "a straight motion")
         events, point = self.end()
         return (*events, replace(motion, start_mm=point))

@@ -91,7 +91,7 @@ def _by_offset(node: Node, read: Callable[[Node], Any]) -> dict[str, Any]:
     for key, value in node.table():
         name = _offset_name(key, value)
         if name in named:
-            raise value.error(f"{name} again in {node.name}", "each work offset once", at_key=True)
+            raise value.error(f"{name} is given twice in {node.name}", "each work offset once", at_key=True)
         named[name] = read(value)
     return named
 

@@ -35,7 +35,7 @@ def read_text(path: Path, suffixes: Iterable[str]) -> str:
     """
     place = Place(file=str(path), line=0)
     if path.suffix.lower() not in suffixes:
-        problem = f"the name ends in {path.suffix}" if path.suffix else "the name has no ending"
+        problem = f"the name ends in {path.suffix}" if path.suffix else "the name has no suffix"
         raise GcodeError(place, "file-kind", problem, f"a file name that ends in {' or '.join(suffixes)}")
     try:
         with path.open("rb") as handle:

@@ -17,4 +17,4 @@ class WriteError(GcodeError):
         super().__init__(place, code, problem, expected)
 
     def __str__(self) -> str:
-        return super().__str__() if self.index is None else f"event {self.index}, from {super().__str__()}"
+        return super().__str__() if self.index is None else f"{super().__str__()} (event {self.index})"

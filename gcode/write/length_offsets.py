@@ -73,7 +73,7 @@ def _words(control: ControlMemory, event: Motion, new: LengthOffset) -> Iterator
                 yield f"{axis}{plain(length / control.grid.unit_mm, _LENGTH_DECIMALS)}"
     else:
         problem = f"a length offset of {new.length_mm:g} mm without a number"
-        raise control.error(event, "tool-length", problem, f"one by a number, as {dialect.name} has them")
+        raise control.error(event, "tool-length", problem, f"an offset with a number, as {dialect.name} requires")
 
 
 def _by_number(control: ControlMemory, event: Motion, number: int, length_mm: float) -> str:

@@ -35,7 +35,7 @@ def spindle_change(control: ControlMemory, event: SpindleChange) -> Iterator[str
 def spindle(control: ControlMemory, event: Event, rpm: float, direction: int) -> Iterator[str]:
     """Words for what changes of speed and direction."""
     if not math.isfinite(rpm) or rpm < 0.0:
-        raise control.error(event, "bad-value", f"a spindle speed of {rpm:g} rpm", "a finite one of 0 or more")
+        raise control.error(event, "bad-value", f"a spindle speed of {rpm:g} rpm", "a finite speed of 0 or more")
     speed = f"S{plain(rpm, control.options.rules.speed_decimals)}"
     words = [speed] if control.words.get("S", "S0") != speed else []
     control.words["S"] = speed
@@ -74,7 +74,7 @@ def dwell(control: ControlMemory, event: Dwell) -> Iterator[str]:
 def pause(control: ControlMemory, event: Event, seconds: float) -> str:
     """P for a time."""
     if not math.isfinite(seconds) or seconds < 0.0:
-        raise control.error(event, "bad-value", f"a dwell of {seconds:g} s", "a finite one of 0 or more")
+        raise control.error(event, "bad-value", f"a dwell of {seconds:g} s", "a finite time of 0 or more")
     word = control.options.dialect.dwell["P"]
     return f"P{plain(seconds / word.seconds, 0 if word.pointed is None else _SECONDS_DECIMALS)}"
 

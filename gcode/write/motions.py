@@ -68,7 +68,7 @@ def _check(control: ControlMemory, event: Motion) -> None:
     if isinstance(event, LinearMotion) and event.rapid:
         return
     if not math.isfinite(event.feed_mm_min) or float(feed_word(control, event)[1:]) <= 0.0:
-        expected = f"a finite one that is not 0 in {_FEED_DECIMALS[control.options.units]} decimals"
+        expected = f"a finite feed that is not 0 in {_FEED_DECIMALS[control.options.units]} decimals"
         raise control.error(event, "bad-value", f"a feed of {event.feed_mm_min:g} mm/min", expected)
 
 

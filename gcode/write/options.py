@@ -95,7 +95,7 @@ class WriteOptions:
             raise ValueError(f"program_number: {name} has no program numbers, got {self.program_number}")
         _within("program_number", self.program_number, 1, 10**rules.program_digits - 1)
         if self.percent and rules.percent is None:
-            raise ValueError(f"percent: {name} knows no percent signs")
+            raise ValueError(f"percent: {name} has no percent signs")
         offsets = [code for code, rule in self.dialect.codes.items() if "work-offset" in rule.groups]
         if self.wcs is not None and (self.wcs not in ALL_OFFSETS or self.wcs.partition(" ")[0] not in offsets):
             raise ValueError(f"wcs must be one of {', '.join(offsets)}, got {self.wcs!r}")

@@ -48,7 +48,9 @@ def tap_of(control: ControlMemory, event: LinearMotion, stream: EventStream) -> 
                 return Tap(out, seconds, _stops(stream, seconds))
             case _:
                 break
-    raise _error(control, event, "a stroke into a thread", "the stroke out of it, back to its start, next")
+    raise _error(
+        control, event, "a tap without its return stroke", "the stroke out of the thread, back to its start, next"
+    )
 
 
 def _is_back(control: ControlMemory, into: LinearMotion, out: LinearMotion) -> bool:
@@ -90,7 +92,7 @@ def _cycle(control: ControlMemory, event: LinearMotion, tap: Tap, feed: str) -> 
     _, _, k = PLANE_AXES[event.state.plane]
     start, end = _ends(control, event)
     if any(start[axis] != end[axis] for axis in range(3) if axis != k):
-        expected = f"one along {'XYZ'[k]}, the normal of G{event.state.plane}"
+        expected = f"a tap along {'XYZ'[k]}, the normal of G{event.state.plane}"
         raise _error(control, event, "a tap that is not square to its plane", expected)
     cycles = control.options.dialect.cycles
     always_rigid = cycles is not None and cycles.always_rigid
@@ -111,7 +113,7 @@ def _cycle(control: ControlMemory, event: LinearMotion, tap: Tap, feed: str) -> 
 def _stroke(control: ControlMemory, event: LinearMotion, tap: Tap, _feed: str) -> Iterator[str]:
     """G33.1."""
     if tap.seconds:
-        raise _error(control, event, f"a tap with a dwell of {tap.seconds:g} s", "one without, as G33.1 is")
+        raise _error(control, event, f"a tap with a dwell of {tap.seconds:g} s", "a tap without a dwell (G33.1)")
     start, end = _ends(control, event)
     incremental = control.words.get("distance") == "G91"
     shown = (after - before if incremental else after for before, after in zip(start, end, strict=True))

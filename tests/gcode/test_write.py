@@ -265,7 +265,7 @@ def test_taps(dialect: str, forward: int, seconds: float, rigid: bool) -> None:
     path.tap(seconds=seconds, rigid=rigid, forward=forward)
     path.line((5.0, 2.0, 10.0), rapid=True)
     if dialect == "linuxcnc" and seconds:
-        with pytest.raises(WriteError, match=r"a tap with a dwell of 0[.]25 s; expected one without"):
+        with pytest.raises(WriteError, match=r"a tap with a dwell of 0[.]25 s; expected a tap without a dwell"):
             text_of(path.events, dialect=dialect)
         return
     made = read_back(text_of(path.events, dialect=dialect), dialect)
