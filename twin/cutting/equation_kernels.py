@@ -70,7 +70,7 @@ def uncut_chip_thickness(feed_per_tooth: float, n_dot_f: float, farther_out: flo
 def to_machine_axes(
     force: EdgeForce, sense: float, cos_t: float, sin_t: float, cos_k: float, sin_k: float
 ) -> tuple[float, float, float]:
-    """Force on the tool in machine axes x, y, z (tri-slice paper, eq. 4, whose printed matrix is not a rotation).
+    """Force on the tool in machine axes x, y, z (tri-slice paper, eq. 4, whose printed matrix is not orthonormal).
 
         x:  -sin(theta)   -cos(theta) sin(kappa)   -cos(theta) cos(kappa)
         y:   cos(theta)   -sin(theta) sin(kappa)   -sin(theta) cos(kappa)

@@ -84,6 +84,7 @@ def test_no_force_in_air() -> None:
     assert engager.engage(np.array([-9.0, 0.0, -2.0]), forward, 10.0, 0.05, stock, NOTHING) is None
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("angle_deg", [0.0, 17.0, 45.0])
 @pytest.mark.parametrize("kind", ["flat", "ball"])
 def test_an_exact_retrace_cuts_next_to_nothing(kind: str, angle_deg: float) -> None:

@@ -8,9 +8,11 @@ from support.straight_pass import StraightPass, golden_case, golden_names
 
 from twin.cutting.engagement import EngagementRule
 
-#: Steps are at 0.1 mm; these places lie at every part of a slice's pitch.
+pytestmark = pytest.mark.compiled
+
+#: Steps are at 0.1 mm; these positions lie at every part of a slice's pitch.
 FORWARD_MM = (0.0, 0.137, 0.274, 0.411)
-#: Where a straight edge stands exactly on the border of the cut its force is undefined: the reference has the edge
+#: Where a straight edge lies exactly on the boundary of the cut its force is undefined: the reference has the edge
 #: force of one of the two teeth there by rounding, this program of neither (h = 0 is no chip).
 ON_THE_BORDER = {"flat10_zero_helix_slot": (0, 90, 180, 270)}
 
@@ -26,7 +28,7 @@ def test_mean_within_1_percent_and_waveform_within_its_limit(name: str) -> None:
         assert max(e.rms_pct for e in found) <= 1.5 * case["rms_pct_of_peak_at_0_1_mm"] + 1.0
 
 
-def test_an_edge_on_the_border_of_the_cut_lies_between_the_values_beside_it() -> None:
+def test_an_edge_on_the_border_of_the_cut_lies_between_the_values_next_to_it() -> None:
     pass_ = StraightPass(golden_case("flat10_zero_helix_slot"))
     spindle = np.radians([-0.01, 0.0, 0.01])
     beside = pass_.model.forces(spindle, 1, pass_.feed, pass_.per_rev_mm, pass_.engage(0.0))

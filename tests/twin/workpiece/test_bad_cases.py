@@ -16,6 +16,8 @@ from twin.workpiece.removal import Removal
 from twin.workpiece.stock import SliceSet, box_slices
 from twin.workpiece.trislice import CellSlices, PolygonSlices
 
+pytestmark = pytest.mark.compiled
+
 PITCH = 0.5
 TOLERANCE = Tolerance.for_pitch(PITCH)
 KINDS = {
