@@ -56,8 +56,8 @@ def _read(path: Path) -> tuple[str, frozenset[str]]:
 def imported_names(source: str) -> set[str]:
     """The modules of `twin` that a source imports, and the names taken from them, which may be modules too.
 
-    >>> sorted(imported_names("from twin.tools import shape, kernels as k"))
-    ['twin.tools', 'twin.tools.kernels', 'twin.tools.shape']
+    >>> sorted(imported_names("from twin.tools import shape, meridian_kernels as k"))
+    ['twin.tools', 'twin.tools.meridian_kernels', 'twin.tools.shape']
     """
     found = set()
     for package, names, module in _IMPORT.findall(source):

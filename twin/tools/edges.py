@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.arrays import FloatArray, frozen
 from twin.errors import ToolError
-from twin.tools import kernels
+from twin.tools.meridian_kernels import meridian_points
 from twin.tools.shape import ToolShape
 
 
@@ -128,7 +128,7 @@ def meridian(shape: ToolShape, s_mm: FloatArray) -> MeridianPoints:
         s_mm: shape (n,), lengths.
     """
     out = np.empty((3, len(s_mm)))
-    kernels.meridian_points(s_mm, shape.disc_mm, shape.corner_mm, shape.taper_rad, out)
+    meridian_points(s_mm, shape.disc_mm, shape.corner_mm, shape.taper_rad, out)
     return MeridianPoints(*out)
 
 

@@ -32,11 +32,11 @@ class MeshEdges:
 
 def mesh_edges(triangles: NDArray[np.int64]) -> MeshEdges:
     """Number the edges of triangles, shape (m, 3), none with a corner twice."""
-    ends, ways = np.empty((2, 3 * len(triangles), 2), dtype=np.int64)
+    ends, uses = np.empty((2, 3 * len(triangles), 2), dtype=np.int64)
     sides = np.empty((len(triangles), 3), dtype=np.int64)
-    count = kernels.number_edges(triangles, int(triangles.max(initial=-1)) + 1, ends, ways, sides)
+    count = kernels.number_edges(triangles, int(triangles.max(initial=-1)) + 1, ends, uses, sides)
     return MeshEdges(
-        ends=ends[:count].copy(), sides=sides, forward=ways[:count, 0].copy(), backward=ways[:count, 1].copy()
+        ends=ends[:count].copy(), sides=sides, forward=uses[:count, 0].copy(), backward=uses[:count, 1].copy()
     )
 
 

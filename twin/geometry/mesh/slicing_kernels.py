@@ -61,7 +61,7 @@ def number_edges(
     triangles: NDArray[np.int64],
     vertices: int,
     ends: NDArray[np.int64],
-    ways: NDArray[np.int64],
+    uses: NDArray[np.int64],
     sides: NDArray[np.int64],
 ) -> int:
     """Number the edges of triangles, by the lower of their vertices.
@@ -70,7 +70,7 @@ def number_edges(
         triangles: shape (m, 3), no corner twice.
         vertices: number of vertices.
         ends: shape (3 m, 2), filled with the vertices of each edge, lower number first.
-        ways: shape (3 m, 2), filled: how many triangles run along it from lower to higher vertex, and back.
+        uses: shape (3 m, 2), filled: how many triangles run along it from lower to higher vertex, and back.
         sides: shape (m, 3), filled: edge j of a triangle joins its corners j and j + 1.
 
     Returns:
@@ -98,10 +98,10 @@ def number_edges(
                 edge = count
                 count += 1
                 ends[edge, 0], ends[edge, 1] = low, high
-                ways[edge, 0], ways[edge, 1] = 0, 0
+                uses[edge, 0], uses[edge, 1] = 0, 0
                 found[begins[low] + held[low]] = edge
                 held[low] += 1
-            ways[edge, 0 if a < b else 1] += 1
+            uses[edge, 0 if a < b else 1] += 1
             sides[t, j] = edge
     return count
 

@@ -1,4 +1,4 @@
-"""Areas and lines on a plane by GEOS: grown regions, their outlines inside a window, ways that stay inside an area."""
+"""Areas and lines on a plane by GEOS: offset areas, their outlines inside a window, lines inside an area."""
 
 from __future__ import annotations
 
