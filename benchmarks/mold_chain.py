@@ -1,4 +1,4 @@
-"""The stages of the example's mold: time to compute them, and their machining times beside the conventional chain's.
+"""The stages of the example's mold: computing times, and machining times next to those of the raster baseline.
 
 python -m benchmarks.mold_chain --triangles 195000 460000
 """

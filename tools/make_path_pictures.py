@@ -26,7 +26,7 @@ def main() -> None:
         stl, out, job = (str(Path(folder) / name) for name in ("torus.stl", "torus.nc", "torus.toml"))
         make_torus.write_stl(stl, make_torus.torus(256, 96, SMALL))
         contour = ["--tool", "flat 3", "--axial-depth", "0.5", "--layers", "0", "--radial-depth", "1.2"]
-        floor = ["--floor-z", "0", "--arcs", "0.005"]
+        floor = ["--floor-z", "0", "--arcs", "0.005", "--force"]
         twin(["paths", "contour", stl, *contour, *floor, "-o", out, "--plot", str(PICTURES / "contour_path.png")])
         scan = ["--tool", "ball 3", "--pitch", "0.05", "--stepover", "0.2", "--arcs", "0.001", "--force"]
         twin(["paths", "scan", stl, *scan, "-o", out, "--plot", str(PICTURES / "scan_path.png")])

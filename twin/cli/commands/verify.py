@@ -46,7 +46,7 @@ def verify(
     tolerances = settings_from_file(VerifySettings, given, settings, "twin verify")
     with progress(quiet=quiet or as_json) as line:
         found = verified(job_file, part, tolerances, begin=line.start, at=line.at)
-    _draw(found, plot, rrd, f"{job_file.name} and {part.name}", force=force)
+    _draw(found, plot, rrd, f"{job_file.name} compared with {part.name}", force=force)
     if as_json:
         typer.echo(deviation_json(found, {"job": job_file, "part": part, **files}))
     elif not quiet:
