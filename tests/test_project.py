@@ -171,3 +171,14 @@ def test_the_citation_has_the_package_s_version_and_licence(settings: dict[str, 
     project = settings["project"]
     assert (citation["version"], citation["license"]) == (project["version"], project["license"])
     assert f"name: {project['authors'][0]['name']}" in (ROOT / "CITATION.cff").read_text()
+
+
+def test_the_nomenclature_has_each_symbol_and_each_name_once() -> None:
+    page = (ROOT / "docs" / "nomenclature.md").read_text()
+    rows = [[cell.strip() for cell in row.split("|")] for row in re.findall(r"^\|(.*)\|$", page, flags=re.M)]
+    rows = [row for row in rows if len(row) == 4 and row[0] not in ("symbol", "---")]
+    symbols = [symbol for row in rows for symbol in row[0].split(", ") if symbol]
+    names = [name for row in rows for name in _QUOTED.findall(row[1])]
+    assert min(len(symbols), len(names)) > 50
+    assert sorted(s for s in set(symbols) if symbols.count(s) > 1) == []
+    assert sorted(n for n in set(names) if names.count(n) > 1) == []

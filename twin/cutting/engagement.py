@@ -292,7 +292,9 @@ def row_angles(rows: int) -> RowAngles:
 
 def edge_arrays(edges: CuttingEdges) -> EdgeArrays:
     """Edge elements as kernels take them."""
-    return EdgeArrays(edges.radius_mm, edges.z_mm, np.cos(edges.kappa_rad), np.sin(edges.kappa_rad), edges.length_mm)
+    return EdgeArrays(
+        edges.radius_mm, edges.z_mm, np.cos(edges.kappa_rad), np.sin(edges.kappa_rad), edges.element_length_mm
+    )
 
 
 class Scratch:

@@ -50,7 +50,7 @@ class MoldMachine(Table):
             rapid_mm_min=self.rapid_mm_min,
             acceleration_mm_s2=self.acceleration_mm_s2,
             rapid_mm_s2=self.rapid_mm_s2,
-            corner_mm=self.corner_mm,
+            corner_tolerance_mm=self.corner_mm,
         )
 
 

@@ -25,7 +25,7 @@ class CuttingEdges:
         z_mm: shape (n,), height of each element's midpoint above the tip.
         radius_mm: shape (n,), radius there.
         kappa_rad: shape (n,), angle between outward normal and tool axis.
-        length_mm: shape (n,), length along the meridian: R dkappa on an arc, dz / sin(kappa) on a wall.
+        element_length_mm: shape (n,), length along the meridian: R dkappa on an arc, dz / sin(kappa) on a wall.
         bounds_mm: shape (n + 1,), positions of the elements' ends along the meridian, from 0 on the axis.
         lag_rad: shape (n,), helix lag z tan(helix) / R of constant lead (R the nominal radius).
         pitch_rad: shape (teeth,), angle of each tooth behind tooth 0, the first 0, increasing below 2 pi.
@@ -37,7 +37,7 @@ class CuttingEdges:
     z_mm: FloatArray
     radius_mm: FloatArray
     kappa_rad: FloatArray
-    length_mm: FloatArray
+    element_length_mm: FloatArray
     bounds_mm: FloatArray
     lag_rad: FloatArray
     pitch_rad: FloatArray
@@ -104,7 +104,7 @@ def cutting_edges(
         z_mm=frozen(points.height_mm, "z_mm", (None,)),
         radius_mm=frozen(points.radius_mm, "radius_mm", (None,)),
         kappa_rad=frozen(points.kappa_rad, "kappa_rad", (None,)),
-        length_mm=frozen(np.diff(bounds), "length_mm", (None,)),
+        element_length_mm=frozen(np.diff(bounds), "element_length_mm", (None,)),
         bounds_mm=frozen(bounds, "bounds_mm", (None,)),
         lag_rad=frozen(lag, "lag_rad", (None,)),
         pitch_rad=frozen(_pitches(pitch_deg or even, teeth), "pitch_rad", (teeth,)),

@@ -14,7 +14,7 @@ from twin.tools.shape import tool_shape
 
 TOOL = tool_shape("flat", 10.0, 30.0)
 A = 1000.0
-DYNAMICS = Dynamics(rapid_mm_min=30_000.0, acceleration_mm_s2=A, rapid_mm_s2=2500.0, corner_mm=0.01)
+DYNAMICS = Dynamics(rapid_mm_min=30_000.0, acceleration_mm_s2=A, rapid_mm_s2=2500.0, corner_tolerance_mm=0.01)
 
 
 def cut(points: object, feed: float = 6000.0) -> Move:
@@ -117,5 +117,5 @@ def test_no_moves_take_no_time() -> None:
 
 
 def test_values_that_cannot_be_are_refused() -> None:
-    with pytest.raises(ValueError, match="corner_mm must be above 0"):
-        Dynamics(corner_mm=0.0)
+    with pytest.raises(ValueError, match="corner_tolerance_mm must be above 0"):
+        Dynamics(corner_tolerance_mm=0.0)

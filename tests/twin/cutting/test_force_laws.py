@@ -201,7 +201,7 @@ def test_an_orthonormal_frame_turns_the_forces() -> None:
     load = model.forces(REVOLUTION, 1, pass_.feed, 0.1, single)
     theta = one_tooth.theta_rad(0, 0.0)[3] - REVOLUTION
     chip = 0.1 * np.cos(theta) * np.sin(one_tooth.kappa_rad[3])
-    db = one_tooth.length_mm[3]
+    db = one_tooth.element_length_mm[3]
     k = COEFFICIENTS
     parts = np.column_stack((k.Ktc * chip + k.Kte, k.Krc * chip + k.Kre, k.Kac * chip + k.Kae)) * db
     clear = np.cos(theta) > 0.05

@@ -45,9 +45,9 @@ def test_edge_elements_cover_the_meridian_once(corner: float, taper: float, step
     edges = cutting_edges(shape, teeth=2, axial_step_mm=step)
     arc = corner * (0.5 * math.pi - math.radians(taper))
     wall = (length - shape.arc_height_mm) / math.cos(math.radians(taper))
-    assert edges.length_mm.sum() == pytest.approx(4.0 - corner + arc + wall, rel=1e-9)
-    assert np.all(edges.length_mm > 0.0)
-    assert edges.length_mm.max() <= 1.2 * step * (1.0 + 1e-9)
+    assert edges.element_length_mm.sum() == pytest.approx(4.0 - corner + arc + wall, rel=1e-9)
+    assert np.all(edges.element_length_mm > 0.0)
+    assert edges.element_length_mm.max() <= 1.2 * step * (1.0 + 1e-9)
     assert np.all(np.diff(edges.z_mm) >= 0.0)
     assert np.all(np.diff(edges.radius_mm) >= 0.0)
     assert edges.bounds_mm[0] == 0.0

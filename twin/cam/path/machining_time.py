@@ -1,7 +1,7 @@
 """Machining time of a tool path: feeds, rapids, limited acceleration, corner speeds with look-ahead.
 
 Every straight piece or arc is a block with a trapezoid of speed. Between two blocks the speed is what a corner rounded
-within ``corner_mm`` allows; rapids begin and end at rest, as controls check their position there.
+within ``corner_tolerance_mm`` allows; rapids begin and end at rest, as controls check their position there.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Dynamics:
         rapid_mm_min: speed of rapids along the path.
         acceleration_mm_s2: along the path, of cuts and links; also towards the centre of arcs.
         rapid_mm_s2: of rapids.
-        corner_mm: how far the path may be rounded off at a corner.
+        corner_tolerance_mm: how far the path may be rounded off at a corner.
 
     Raises:
         ValueError: a value that is not above 0.
@@ -37,10 +37,10 @@ class Dynamics:
     rapid_mm_min: float = 30_000.0
     acceleration_mm_s2: float = 3_000.0
     rapid_mm_s2: float = 5_000.0
-    corner_mm: float = 0.01
+    corner_tolerance_mm: float = 0.01
 
     def __post_init__(self) -> None:
-        for name in ("rapid_mm_min", "acceleration_mm_s2", "rapid_mm_s2", "corner_mm"):
+        for name in ("rapid_mm_min", "acceleration_mm_s2", "rapid_mm_s2", "corner_tolerance_mm"):
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name} must be above 0, got {getattr(self, name)}")
 
@@ -115,7 +115,7 @@ def block_times_s(blocks: Blocks, dynamics: Dynamics) -> FloatArray:
         speed,
         acceleration,
         rapid.astype(np.float64),
-        dynamics.corner_mm,
+        dynamics.corner_tolerance_mm,
         corner,
     )
     kernels.block_times(blocks.length_mm, speed, acceleration, corner, times)

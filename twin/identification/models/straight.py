@@ -83,8 +83,8 @@ def mean_matrix(cut: StraightPass) -> FloatArray:
     c1, s1, span = np.sin(high) - np.sin(low), np.cos(low) - np.cos(high), high - low
     cc = 0.5 * span + 0.25 * (np.sin(2.0 * high) - np.sin(2.0 * low))
     sc = 0.5 * (np.sin(high) ** 2 - np.sin(low) ** 2)
-    chip = edges.length_mm * cut.feed_per_rev_mm / (2.0 * math.pi)
-    edge = edges.length_mm * len(cut.pitch_rad) / (2.0 * math.pi)
+    chip = edges.element_length_mm * cut.feed_per_rev_mm / (2.0 * math.pi)
+    edge = edges.element_length_mm * len(cut.pitch_rad) / (2.0 * math.pi)
     rows = [
         [-sc * sin_k, -s1, -cc * sin_k**2, -c1 * sin_k, -cc * sin_k * cos_k, -c1 * cos_k],
         [cc * sin_k, c1, -sc * sin_k**2, -s1 * sin_k, -sc * sin_k * cos_k, -s1 * cos_k],
@@ -134,7 +134,7 @@ def _edges(cut: StraightPass, count: int) -> CuttingEdges:
         z_mm=at.height_mm,
         radius_mm=at.radius_mm,
         kappa_rad=at.kappa_rad,
-        length_mm=np.diff(bounds),
+        element_length_mm=np.diff(bounds),
         bounds_mm=bounds,
         lag_rad=at.height_mm * math.tan(math.radians(cut.helix_deg)) / shape.nominal_radius_mm,
         pitch_rad=cut.pitch_rad,
