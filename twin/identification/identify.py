@@ -12,7 +12,8 @@ from twin.arrays import FloatArray
 from twin.comparison.align import find_delay
 from twin.errors import CompareError, IdentifyError, MeasuredError
 from twin.identification.cuts.axes_hint import other_axes
-from twin.identification.cuts.cuts_file import Cut, Cuts, Method
+from twin.identification.cuts.cuts_file import Cut, Cuts
+from twin.identification.cuts.fit import Method
 from twin.identification.cuts.measure import Measured, given_mean, log_of, measure, straight_window
 from twin.identification.doubts import LEAST_FIT, doubts
 from twin.identification.estimate import Estimate, fixed_values

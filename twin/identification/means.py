@@ -9,7 +9,7 @@ import numpy as np
 from scipy import optimize
 
 from twin.arrays import FloatArray
-from twin.identification.cuts.cuts_file import Fit, Name
+from twin.identification.cuts.fit import Fit, Name
 from twin.identification.cuts.measure import Measured
 from twin.identification.estimate import Estimate, fit_linear, fixed_values
 from twin.identification.models.model import Model

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.identification.cuts.cuts_file import Method
+from twin.identification.cuts.fit import Method
 from twin.identification.cuts.measure import Measured
 from twin.identification.estimate import Estimate
 from twin.identification.harmonics import ComplexArray, to_waveform

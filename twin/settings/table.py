@@ -15,7 +15,7 @@ FilePath: TypeAlias = Annotated[Path, Strict(False)]
 class Table(BaseModel):
     """A table of a settings file: unknown keys are refused, text is not a number, nor are true and false."""
 
-    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

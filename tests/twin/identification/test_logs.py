@@ -12,7 +12,7 @@ from support.cut_logs import QUARTER_TURN, write_log
 from support.edge_integral import SOME, Pass, log_rows
 
 from twin.errors import IdentifyError
-from twin.identification.cuts.cuts_file import Fit
+from twin.identification.cuts.fit import Fit
 from twin.identification.cuts.load import cuts_from_dict
 from twin.identification.cuts.measure import harmonic_count
 from twin.identification.harmonics import find_speed, of_samples, of_waveform, to_waveform

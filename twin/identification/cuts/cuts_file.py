@@ -7,16 +7,14 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, Strict
 
+from twin.identification.cuts.fit import Fit
 from twin.job.model import Tool
 from twin.measured.settings import LogReading
 from twin.settings.table import FilePath, Key, Point, Table
 
 Direction: TypeAlias = Literal["slot", "up", "down"]
-Name: TypeAlias = Literal["Ktc", "Kte", "Krc", "Kre", "Kac", "Kae"]
-Method: TypeAlias = Literal["mean", "iterative", "waveform"]
 Window: TypeAlias = Annotated[tuple[float, float], Strict(False)]
 Windows: TypeAlias = Annotated[tuple[Window, ...], Strict(False)]
-Texts: TypeAlias = Annotated[tuple[str, ...], Strict(False)]
 
 
 class CutTool(Tool):
@@ -90,41 +88,6 @@ class Cut(Shared, CutSource):
         default=None, description="angle of tooth 0 at the log's time 0, from +x in the direction of rotation"
     )
     holdout: bool = Field(default=False, description="report this cut, but do not fit it")
-
-
-class Fit(Table):
-    """Method and weights of the fit."""
-
-    method: Method = Field(
-        default="mean",
-        description="method: mean (least squares on mean forces), iterative (search by simulation), or waveform",
-    )
-    holdout: Annotated[Texts, Key(metavar="NAME", unset="none")] = Field(
-        default=(), description="name of a cut that is reported and not fitted"
-    )
-    weights: Literal["errors", "equal"] = Field(
-        default="errors", description="weights by the standard errors of the means, or equal"
-    )
-    fixed: dict[Name, float] = Field(default_factory=dict, description="coefficients with given values")
-    start: dict[Name, float] = Field(default_factory=dict, description="start of the iterative search")
-    lower: dict[Name, float] = Field(default_factory=dict, description="lower bounds of the iterative search")
-    upper: dict[Name, float] = Field(default_factory=dict, description="upper bounds of the iterative search")
-    runout: bool = Field(default=False, description="find the runout as well (waveform)")
-    harmonics: Annotated[int | None, Key(unset="12 per tooth, at most 60")] = Field(
-        default=None,
-        ge=1,
-        le=400,
-        description="number of harmonics of the spindle frequency (waveform)",
-    )
-    lowpass_hz: Annotated[float | None, Key(unset="none")] = Field(
-        default=None, gt=0.0, description="highest frequency that is compared, Hz (waveform)"
-    )
-    speed: Literal["found", "given"] = Field(
-        default="found", description="spindle speed of a log: found within 1 % of the given one, or as given"
-    )
-    source: Annotated[str | None, Key(unset="none")] = Field(
-        default=None, min_length=1, pattern=r"\S", description="source that is written with the coefficients"
-    )
 
 
 class CutsFile(Table):
