@@ -1,4 +1,7 @@
-"""Pytest plugin for runs under ``NUMBA_DISABLE_JIT=1``: fails when a kernel was never called as plain Python.
+"""Pytest plugin for runs under ``NUMBA_DISABLE_JIT=1``: fails when no test covers a kernel as plain Python.
+
+Plain Python is a hundred times slower. Tests marked ``compiled`` are omitted, and a test that takes longer than
+`LIMIT_S` of processor time is skipped; kernels that it called do not count.
 
 NUMBA_DISABLE_JIT=1 python -m pytest -p support.plain_kernels -m "not compiled" tests/twin/tools
 """
@@ -7,7 +10,8 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Callable
+import signal
+from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +21,13 @@ import twin.jit
 
 ROOT = Path(__file__).parents[2]
 KERNELS = sorted(p.relative_to(ROOT) for p in (ROOT / "twin").rglob("*kernels.py"))
+#: Processor time for one test, s.
+LIMIT_S = 2.0
 _OUTPUT = "kernels called"
 
 defined: set[str] = set()
+#: By the test at hand, and by all tests that came to their end.
+noted: set[str] = set()
 called: set[str] = set()
 
 
@@ -30,7 +38,7 @@ def njit(function: Callable[..., Any]) -> Callable[..., Any]:
 
     @functools.wraps(function)
     def noting(*arguments: Any, **named: Any) -> Any:
-        called.add(name)
+        noted.add(name)
         return function(*arguments, **named)
 
     return noting
@@ -51,6 +59,26 @@ class Workers:
     def pytest_testnodedown(self, node: Any) -> None:
         """The names that a worker sent at its end."""
         called.update(getattr(node, "workeroutput", {}).get(_OUTPUT, ()))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
+    """Carry out a test within the limit; fixtures have none."""
+
+    def stop(*_: object) -> None:
+        noted.clear()
+        pytest.skip(f"takes more than {LIMIT_S:g} s as plain Python")
+
+    usual = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, LIMIT_S)
+    try:
+        result = yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, usual)
+    called.update(noted)
+    noted.clear()
+    return result
 
 
 @pytest.hookimpl(trylast=True)
