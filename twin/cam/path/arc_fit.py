@@ -88,9 +88,8 @@ def _planar(move: Move, points: FloatArray, plane: int, options: FitOptions) -> 
     flat = np.ascontiguousarray(points[:, (i, j)])
     left, right = _bounds(points, plane, options)
     ends, fitted = np.empty(len(flat) - 1, dtype=np.int64), np.zeros((len(flat) - 1, 4))
-    count = kernels.fit_plane(
-        flat, left, right, options.arcs, options.least_radius_mm, options.most_radius_mm, ends, fitted
-    )
+    limits = kernels.Limits(left, right, float(options.least_radius_mm), float(options.most_radius_mm))
+    count = kernels.fit_plane(flat, limits, options.arcs, ends, fitted)
     first, run = 0, [0]
     for end, (x, y, radius, sweep) in zip(ends[:count].tolist(), fitted[:count].tolist(), strict=True):
         if radius == 0.0:
@@ -135,8 +134,8 @@ def _plane(points: FloatArray) -> int | None:
 
 def _bounds(points: FloatArray, plane: int, options: FitOptions) -> tuple[float, float]:
     """How far pieces may lie to the left and to the right of the path, seen in the plane's axes."""
-    most = options.tolerance_mm
-    least = most if options.gouge_mm is None else options.gouge_mm
+    most = float(options.tolerance_mm)
+    least = most if options.gouge_mm is None else float(options.gouge_mm)
     side = options.material
     if side == "below" and plane != 17:
         # axes are (z, x) and (y, z): below is to the left of a path towards +x, to the right of one towards +y

@@ -7,6 +7,7 @@ piece is found by doubling its number of points until it does not fit and halvin
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +16,24 @@ from twin.arrays import FloatArray
 from twin.jit import njit
 
 
+class Limits(NamedTuple):
+    """What a piece may be.
+
+    Attributes:
+        left, right: how far it may lie to the left and right of the polyline as seen along it, mm.
+        least_radius, most_radius: of arcs, mm.
+    """
+
+    left: float
+    right: float
+    least_radius: float
+    most_radius: float
+
+
 @njit
-def _line_fits(points: FloatArray, i: int, j: int, left: float, right: float) -> bool:
-    """Whether the chord from point i to j lies within ``left`` to the left and ``right`` to the right of the points."""
+def _line_fits(points: FloatArray, i: int, j: int, limits: Limits) -> bool:
+    """Whether the chord from point i to j lies within the limits on both sides of the points between."""
+    left, right = limits.left, limits.right
     ux, uy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
     length = math.hypot(ux, uy)
     if length == 0.0:
@@ -78,21 +94,18 @@ def _arc_fits(
     points: FloatArray,
     i: int,
     j: int,
-    left: float,
-    right: float,
-    least_radius: float,
-    most_radius: float,
+    limits: Limits,
     arc: FloatArray,
 ) -> bool:
-    """Whether an arc from point i to j lies within the bounds; fills it."""
+    """Whether an arc from point i to j lies within the limits; fills in it."""
     if not _arc_through(points, i, j, arc):
         return False
     cx, cy, radius, sweep = arc[0], arc[1], arc[2], arc[3]
-    if radius < least_radius or radius > most_radius:
+    if radius < limits.least_radius or radius > limits.most_radius:
         return False
     turn = 1.0 if sweep > 0.0 else -1.0
     # to the left of a counter-clockwise arc is its inside
-    outer, inner = (left, right) if turn > 0.0 else (right, left)
+    outer, inner = (limits.left, limits.right) if turn > 0.0 else (limits.right, limits.left)
     px, py = points[i, 0] - cx, points[i, 1] - cy
     for k in range(i + 1, j + 1):
         qx, qy = points[k, 0] - cx, points[k, 1] - cy
@@ -112,62 +125,67 @@ def _arc_fits(
 
 
 @njit
-def fit_plane(
-    points: FloatArray,
-    left: float,
-    right: float,
-    arcs: bool,
-    least_radius: float,
-    most_radius: float,
-    ends: NDArray[np.int64],
-    fitted: FloatArray,
-) -> int:
+def _longest_line(points: FloatArray, i: int, limits: Limits) -> int:
+    """The last point of the longest chord from point i that fits."""
+    n, end, step = len(points), i + 1, 2
+    while i + step < n and _line_fits(points, i, i + step, limits):
+        end = i + step
+        step *= 2
+    bad = min(i + step, n)
+    while bad - end > 1:
+        middle = (bad + end) // 2
+        if _line_fits(points, i, middle, limits):
+            end = middle
+        else:
+            bad = middle
+    return end
+
+
+@njit
+def _longest_arc(points: FloatArray, i: int, limits: Limits, arc: FloatArray, best: FloatArray) -> int:
+    """The last point of the longest arc from point i that fits, i without one; fills in the arc.
+
+    Args:
+        arc: work array, shape (4,).
+        best: filled with centre x, y, radius, signed sweep.
+    """
+    n, end, step = len(points), i, 3
+    while i + step < n and _arc_fits(points, i, i + step, limits, arc):
+        end = i + step
+        best[:] = arc
+        step *= 2
+    bad = min(i + step, n)
+    while end > i and bad - end > 1:
+        middle = (bad + end) // 2
+        if _arc_fits(points, i, middle, limits, arc):
+            end = middle
+            best[:] = arc
+        else:
+            bad = middle
+    return end
+
+
+@njit
+def fit_plane(points: FloatArray, limits: Limits, arcs: bool, ends: NDArray[np.int64], fitted: FloatArray) -> int:
     """Fit pieces to a polyline in a plane.
 
     Args:
         points: shape (n, 2), no two neighbours equal.
-        left, right: how far a piece may lie to the left and right of the polyline as seen along it.
-        arcs: whether arcs may be used.
+        arcs: whether arcs may be used: where they are longer than a line by more than one point.
         ends: filled with the point at which each piece ends, shape (n - 1,).
         fitted: filled with centre, radius and sweep of each piece that is an arc, radius 0 else, shape (n - 1, 4).
 
     Returns:
         Number of pieces.
     """
-    n = len(points)
     arc, best = np.zeros(4), np.zeros(4)
     i = pieces = 0
-    while i < n - 1:
-        line_end = i + 1
-        step = 2
-        while i + step < n and _line_fits(points, i, i + step, left, right):
-            line_end = i + step
-            step *= 2
-        bad = min(i + step, n)
-        while bad - line_end > 1:
-            middle = (bad + line_end) // 2
-            if _line_fits(points, i, middle, left, right):
-                line_end = middle
-            else:
-                bad = middle
-        end = line_end
+    while i < len(points) - 1:
+        end = _longest_line(points, i, limits)
         fitted[pieces, 2] = 0.0
         if arcs:
-            arc_end = i
-            step = 3
-            while i + step < n and _arc_fits(points, i, i + step, left, right, least_radius, most_radius, arc):
-                arc_end = i + step
-                best[:] = arc
-                step *= 2
-            bad = min(i + step, n)
-            while arc_end > i and bad - arc_end > 1:
-                middle = (bad + arc_end) // 2
-                if _arc_fits(points, i, middle, left, right, least_radius, most_radius, arc):
-                    arc_end = middle
-                    best[:] = arc
-                else:
-                    bad = middle
-            if arc_end > line_end + 1:
+            arc_end = _longest_arc(points, i, limits, arc, best)
+            if arc_end > end + 1:
                 end = arc_end
                 fitted[pieces] = best
         ends[pieces] = end

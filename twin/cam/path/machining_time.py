@@ -107,18 +107,9 @@ def block_times_s(blocks: Blocks, dynamics: Dynamics) -> FloatArray:
     speed = np.where(rapid, dynamics.rapid_mm_min / 60.0, blocks.speed_mm_s)
     speed = np.minimum(speed, np.sqrt(acceleration * blocks.radius_mm))
     corner, times = np.empty(len(speed) + 1), np.empty(len(speed))
-    kernels.corner_speeds(
-        blocks.length_mm,
-        blocks.into,
-        blocks.out,
-        blocks.radius_mm,
-        speed,
-        acceleration,
-        rapid.astype(np.float64),
-        dynamics.corner_tolerance_mm,
-        corner,
-    )
-    kernels.block_times(blocks.length_mm, speed, acceleration, corner, times)
+    chain = kernels.Chain(blocks.length_mm, blocks.into, blocks.out, blocks.radius_mm, speed, acceleration, rapid)
+    kernels.corner_speeds(chain, float(dynamics.corner_tolerance_mm), corner)
+    kernels.block_times(chain, corner, times)
     return times
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,9 +43,11 @@ class LinkSpeeds:
     rapid_mm_s2: float = 1e12
 
     @property
-    def parameters(self) -> FloatArray:
-        """Shape (4,), as the kernels want them."""
-        return np.array([self.feed_mm_s, self.feed_mm_s2, self.rapid_mm_s, self.rapid_mm_s2])
+    def numbers(self) -> kernels.Speeds:
+        """The form that kernels take."""
+        return kernels.Speeds(
+            float(self.feed_mm_s), float(self.feed_mm_s2), float(self.rapid_mm_s), float(self.rapid_mm_s2)
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -147,60 +149,62 @@ def order_pieces(
     lift = np.concatenate(
         ([start_lift_s] * 2, np.broadcast_to(np.asarray(lift_s, np.float64), (len(pieces), 2)).ravel())
     )
-    field = (np.empty((0, 0)), np.zeros(3)) if clear is None else (clear.distance_mm, _grid(clear))
-    return _search(ends, lift, speeds.parameters, field, two_way, search)
+    return _search(_links(ends, lift, speeds, clear), two_way, search)
 
 
-def _grid(clear: ClearGrid) -> FloatArray:
-    return np.array([*clear.low_mm, clear.pitch_mm])
+def _links(ends: FloatArray, lift: FloatArray, speeds: LinkSpeeds, clear: ClearGrid | None) -> kernels.Links:
+    if clear is None:
+        return kernels.Links(ends, lift, speeds.numbers, np.empty((0, 0)), 0.0, 0.0, 0.0)
+    x, y = clear.low_mm.tolist()
+    return kernels.Links(ends, lift, speeds.numbers, clear.distance_mm, x, y, float(clear.pitch_mm))
 
 
-def _search(
-    ends: FloatArray,
-    lift: FloatArray,
-    speeds: FloatArray,
-    field: tuple[FloatArray, FloatArray],
-    two_way: bool,
-    search: Search,
-) -> Tour:
-    n = len(ends) // 2
-    extent = float(np.ptp(ends, axis=0).max()) or 1.0
-    tour, back = kernels.greedy(ends, lift, speeds, *field, two_way, extent / max(1.0, (0.5 * n) ** 0.5))
-    first = kernels.tour_s(tour, back, ends, lift, speeds, *field)
+def _search(links: kernels.Links, two_way: bool, search: Search) -> Tour:
+    n = len(links.ends) // 2
+    extent = float(np.ptp(links.ends, axis=0).max()) or 1.0
+    tour, back = kernels.greedy(links, two_way, extent / max(1.0, (0.5 * n) ** 0.5))
+    first = kernels.tour_s(tour, back, links)
     if search.method != "greedy" and n > 3:
-        # the dummy closes the tour; its two ends are none
+        # the dummy closes the tour; its two ends are nowhere
         tour, back = np.append(tour, n), np.append(back, np.int8(0))
-        rest = (*_neighbours(ends, lift, speeds), ends, lift, speeds, *field, two_way)
-        kernels.local_search(tour, back, *rest)
+        neighbours = _neighbours(links, two_way)
+        kernels.local_search(tour, back, links, neighbours)
         if search.method == "ils":
-            _iterate(tour, back, rest, search)
+            _iterate(tour, back, links, neighbours, search)
         tour, back = _opened(tour, back)
-    total = kernels.tour_s(tour, back, ends, lift, speeds, *field)
+    total = kernels.tour_s(tour, back, links)
     out, into = 2 * tour[:-1] + 1 - back[:-1], 2 * tour[1:] + back[1:]
     down = np.empty(n - 1, dtype=np.bool_)
-    kernels.links_down(out, into, ends, lift, speeds, *field, down)
+    kernels.links_down(out, into, links, down)
     return Tour(order=tour[1:] - 1, backwards=back[1:] == 1, down=down, link_s=total, first_s=first)
 
 
-def _iterate(tour: NDArray[np.int64], back: NDArray[np.int8], rest: tuple[Any, ...], search: Search) -> None:
+def _iterate(
+    tour: NDArray[np.int64],
+    back: NDArray[np.int8],
+    links: kernels.Links,
+    neighbours: kernels.Neighbours,
+    search: Search,
+) -> None:
     left = search.iterations if search.iterations is not None else max(500, 5 * len(tour))
     random = 1 + search.seed % 2147483646
     end = None if search.budget_s is None else time.monotonic() + search.budget_s
     while left > 0 and (end is None or time.monotonic() < end):
-        _, random = kernels.iterate(random, min(left, _CHUNK), tour, back, *rest)
+        _, random = kernels.iterate(random, min(left, _CHUNK), tour, back, links, neighbours)
         left -= _CHUNK
 
 
-def _neighbours(ends: FloatArray, lift: FloatArray, speeds: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+def _neighbours(links: kernels.Links, two_way: bool) -> kernels.Neighbours:
     """For each end the pieces whose ends are nearest, and the least time of a link to them, both shape (2 n, k)."""
+    ends, lift, speeds = links.ends, links.lift, links.speeds
     count = min(_NEAR, len(ends) // 2 - 1)
     distances, near = cKDTree(ends).query(ends, k=min(len(ends), 2 * count + 2))
     table = np.empty((len(ends), count), dtype=np.int64)
     reach = np.empty((len(ends), count))
     kernels.distinct(np.asarray(near, dtype=np.int64), np.asarray(distances, dtype=np.float64), table, reach)
-    stay = kernels.trapezoids_s(reach, speeds[0], speeds[1])
-    over = lift[:, None] + lift.min() + kernels.trapezoids_s(reach, speeds[2], speeds[3])
-    return table, np.minimum(stay, over)
+    stay = kernels.trapezoids_s(reach, speeds.feed, speeds.feed_acceleration)
+    over = lift[:, None] + lift.min() + kernels.trapezoids_s(reach, speeds.rapid, speeds.rapid_acceleration)
+    return kernels.Neighbours(table, np.minimum(stay, over), two_way)
 
 
 def _opened(tour: NDArray[np.int64], back: NDArray[np.int8]) -> tuple[NDArray[np.int64], NDArray[np.int8]]:

@@ -35,26 +35,16 @@ class Profiles:
 
     Attributes:
         axis: 0 for sections normal to x (lines along y), 1 for sections normal to y (lines along x).
-        positions_mm: shape (m,), increasing.
-        segments, segment_begins, corners, corner_begins: see `twin.cam.slices.cl_line_kernels.envelope`.
+        pieces: their upper segments and corners.
         low_mm, high_mm: range along the lines that the sections fill.
         floor_mm: lowest point of the sections.
     """
 
     axis: int
-    positions_mm: FloatArray
-    segments: FloatArray
-    segment_begins: NDArray[np.int64]
-    corners: FloatArray
-    corner_begins: NDArray[np.int64]
+    pieces: kernels.Pieces
     low_mm: float
     high_mm: float
     floor_mm: float
-
-    @property
-    def arrays(self) -> tuple[FloatArray, NDArray[np.int64], FloatArray, NDArray[np.int64], FloatArray]:
-        """What the kernels take."""
-        return self.segments, self.segment_begins, self.corners, self.corner_begins, self.positions_mm
 
     @classmethod
     def of(cls, sections: Sections) -> Profiles:
@@ -69,17 +59,21 @@ class Profiles:
         points = np.concatenate(rings) if rings else np.empty((0, 2))
         begins = np.cumsum([0] + [len(r) for r in rings])
         firsts = np.cumsum([0] + [len(region.rings) for region in sections.regions])
-        segments, corners = np.empty((len(points), 7)), np.empty((len(points), 6))
+        segments = np.empty((len(points), kernels.SEGMENT_COLUMNS))
+        corners = np.empty((len(points), kernels.CORNER_COLUMNS))
         segment_begins, corner_begins = np.empty((2, len(firsts)), dtype=np.int64)
-        kernels.profile_pieces(points, begins, firsts, segments, segment_begins, corners, corner_begins)
+        outlines = kernels.Outlines(points, begins, firsts)
+        kernels.profile_pieces(outlines, segments, segment_begins, corners, corner_begins)
         low, high = (float(points[:, 0].min()), float(points[:, 0].max())) if len(points) else (0.0, 0.0)
         return cls(
             axis=sections.axis,
-            positions_mm=sections.positions_mm,
-            segments=np.ascontiguousarray(segments[: segment_begins[-1]].T),
-            segment_begins=segment_begins,
-            corners=np.ascontiguousarray(corners[: corner_begins[-1]].T),
-            corner_begins=corner_begins,
+            pieces=kernels.Pieces(
+                np.ascontiguousarray(segments[: segment_begins[-1]].T),
+                segment_begins,
+                np.ascontiguousarray(corners[: corner_begins[-1]].T),
+                corner_begins,
+                sections.positions_mm,
+            ),
             low_mm=low,
             high_mm=high,
             floor_mm=float(points[:, 1].min()) if len(points) else 0.0,
@@ -130,18 +124,11 @@ def _heights(
     planes = np.ascontiguousarray(planes_mm, dtype=np.float64)
     heights, best = np.empty((len(planes), samples.count)), np.empty((len(planes), samples.count), dtype=np.int64)
 
+    row = kernels.SampleRow(float(samples.start_mm), float(samples.step_mm), samples.count)
+    end = kernels.ToolEnd(float(element.disc_mm), float(element.corner_mm))
+
     def part(first: int, last: int) -> None:
-        kernels.envelope(
-            *profiles.arrays,
-            planes[first:last],
-            element.disc_mm,
-            element.corner_mm,
-            samples.start_mm,
-            samples.step_mm,
-            smooth,
-            heights[first:last],
-            best[first:last],
-        )
+        kernels.envelope(profiles.pieces, end, planes[first:last], row, smooth, heights[first:last], best[first:last])
 
     in_parts(part, len(planes), threads=threads, few=_FEW_PLANES)
     return heights + element.drop_mm, best
@@ -237,17 +224,10 @@ def _refined(
     starts = np.column_stack((planes_mm, samples.at_mm[cells]))
     heights = np.empty((len(cells), FINER + 1))
 
+    end, step = kernels.ToolEnd(float(element.disc_mm), float(element.corner_mm)), float(samples.step_mm) / FINER
+
     def part(first: int, last: int) -> None:
-        kernels.refine(
-            *profiles.arrays,
-            starts[first:last],
-            touched[first:last],
-            element.disc_mm,
-            element.corner_mm,
-            samples.step_mm / FINER,
-            smooth,
-            heights[first:last],
-        )
+        kernels.refine(profiles.pieces, end, starts[first:last], touched[first:last], step, smooth, heights[first:last])
 
     in_parts(part, len(cells), threads=threads, few=_FEW_CELLS)
     return heights + element.drop_mm

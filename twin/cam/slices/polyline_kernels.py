@@ -1,4 +1,4 @@
-"""Lines from heights at even places and within cells, with inner corners and walls; compiled."""
+"""Lines from heights at even samples and within cells, with inner corners and walls; compiled."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _WALL = 50.0
 def _joined(
     heights: FloatArray, cells: NDArray[np.int64], finer: FloatArray, start: float, step: float, line: FloatArray
 ) -> int:
-    """One line through even places, and through those within its rough cells; its number of points."""
+    """One line through even samples, and through those within its rough cells; its number of points."""
     parts, count, rough = finer.shape[1] - 1, 0, 0
     for k in range(len(heights)):
         at = start + step * k
@@ -39,7 +39,7 @@ def _slope(line: FloatArray, i: int) -> float:
 
 @njit
 def _with_corners(line: FloatArray, made: FloatArray) -> int:
-    """A line with the points where an inner corner lies between two of its points: where its sides, drawn on, meet."""
+    """A line with a point at every inner corner between two of its points: where its sides, extended, meet."""
     count = 0
     for i in range(len(line)):
         if 2 <= i < len(line) - 1:
@@ -56,7 +56,7 @@ def _with_corners(line: FloatArray, made: FloatArray) -> int:
 
 @njit
 def _with_walls(line: FloatArray, made: FloatArray) -> int:
-    """A line that goes upright where it is nearly so, on the side away from the wall."""
+    """A line that is upright where it is nearly so, on the side away from the wall."""
     count = 0
     for i in range(len(line)):
         if i > 0:
@@ -82,14 +82,14 @@ def lines(
     points: FloatArray,
     ends: NDArray[np.int64],
 ) -> None:
-    """All lines, one behind the other.
+    """All lines, one after the other.
 
     Args:
-        heights: shape (p, n), at even places.
+        heights: shape (p, n), at even samples.
         begins: shape (p + 1,), where each line's rough cells begin.
-        cells: shape (c,), the rough cells, increasing in each line; cell k lies behind place k.
+        cells: shape (c,), the rough cells, increasing in each line; cell k begins at sample k.
         finer: shape (c, m + 1), heights within these, both ends included.
-        start, step: of the even places.
+        start, step: of the even samples.
         points: shape (at least 4 (p n + c m), 2), filled.
         ends: shape (p,), filled with where each line ends.
     """

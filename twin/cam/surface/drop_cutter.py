@@ -17,6 +17,7 @@ from twin.cam.surface import drop_cutter_kernels as kernels
 from twin.cam.surface.surface import Surface, surface_of
 from twin.errors import ToolError
 from twin.geometry.threads import in_parts, run_all
+from twin.tools.meridian import Meridian
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
 
@@ -29,6 +30,8 @@ _MOST_CELLS = 4_000_000
 _MOST_ENTRIES = 60_000_000
 
 FACE, EDGE, VERTEX, FLOOR = 0, 1, 2, 3
+#: A tool without a body: it touches at its tip alone.
+_NEEDLE = Meridian(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,17 +49,6 @@ class Contacts:
     kind: NDArray[np.int8]
     points_mm: FloatArray
     normals: FloatArray
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Grid:
-    """Elements by cells of the plan: those whose patches touch it."""
-
-    frame: FloatArray
-    columns: int
-    rows: int
-    begins: NDArray[np.int64]
-    entries: NDArray[np.int32]
 
 
 class DropCutter:
@@ -88,14 +80,10 @@ class DropCutter:
         if math.isnan(self.floor_mm):
             raise ToolError("drop-cutter: floor_mm is no number; expected a height, or -inf for none")
         self._threads = threads
-        self._parameters = np.zeros(7) if shape is None else shape.parameters
-        self._faces = np.empty((len(self.surface.triangles), 10))
-        self._edges = np.empty((len(self.surface.ends), 9))
-        kernels.face_patches(
-            self.surface.vertices_mm, self.surface.triangles, self.surface.normals, self._parameters, self._faces
-        )
-        kernels.edge_patches(self.surface.vertices_mm, self.surface.ends, self._edges)
-        self._grid = self._listed()
+        meridian = _NEEDLE if shape is None else shape.meridian
+        elements = _elements(self.surface, meridian)
+        grid, lists = self._listed(elements, meridian)
+        self._cutter = kernels.Cutter(meridian, self.floor_mm, elements, grid, lists)
 
     def drop(self, points_mm: ArrayLike, threads: int | None = None) -> FloatArray:
         """Height of the tool tip over plan points.
@@ -109,38 +97,31 @@ class DropCutter:
         return self._dropped(_plan_points(points_mm), threads)[0]
 
     def contacts(self, points_mm: ArrayLike, threads: int | None = None) -> Contacts:
-        """Heights of the tip, and where the tool touches; of several contacts at one height any is told."""
+        """Heights of the tip, and where the tool touches; of several contacts at one height any one is given."""
         points = _plan_points(points_mm)
-        heights, elements = self._dropped(points, threads)
-        places = np.empty((len(points), 3))
-        kernels.contacts(
-            points,
-            elements,
-            self._parameters,
-            self.surface.triangles,
-            self._faces,
-            self._edges,
-            self.surface.vertices_mm,
-            places,
-        )
-        bounds = np.cumsum([len(self._faces), len(self._edges)])
-        kind = np.where(elements < 0, FLOOR, np.searchsorted(bounds, elements, side="right")).astype(np.int8)
-        normals = self._normals(points, heights, places, elements)
-        return Contacts(heights, kind, places, normals)
+        heights, touched = self._dropped(points, threads)
+        positions = np.empty((len(points), 3))
+        kernels.contacts(self._cutter, points, touched, positions)
+        elements = self._cutter.elements
+        bounds = np.cumsum([len(elements.faces), len(elements.edges)])
+        kind = np.where(touched < 0, FLOOR, np.searchsorted(bounds, touched, side="right")).astype(np.int8)
+        normals = self._normals(points, heights, positions, touched)
+        return Contacts(heights, kind, positions, normals)
 
     def _normals(
-        self, points: FloatArray, heights: FloatArray, places: FloatArray, elements: NDArray[np.int32]
+        self, points: FloatArray, heights: FloatArray, positions: FloatArray, touched: NDArray[np.int32]
     ) -> FloatArray:
         """Normals of the tool where it touches: the face's own, or that of the meridian at the contact."""
         normals = np.tile(np.array([0.0, 0.0, 1.0]), (len(points), 1))
-        on_face = (elements >= 0) & (elements < len(self._faces))
-        normals[on_face] = self.surface.normals[elements[on_face]]
-        rest = np.flatnonzero(elements >= len(self._faces))
+        faces = len(self._cutter.elements.faces)
+        on_face = (touched >= 0) & (touched < faces)
+        normals[on_face] = self.surface.normals[touched[on_face]]
+        rest = np.flatnonzero(touched >= faces)
         if self.tool is None or len(rest) == 0:
             return normals
-        across = points[rest] - places[rest, :2]
+        across = points[rest] - positions[rest, :2]
         rho = np.hypot(across[:, 0], across[:, 1])
-        kappa = self.tool.kappa_rad(places[rest, 2] - heights[rest])
+        kappa = self.tool.kappa_rad(positions[rest, 2] - heights[rest])
         kappa = np.where(rho <= self.tool.disc_mm * (1.0 - 1e-12), 0.0, kappa)
         unit = across / np.maximum(rho, 1e-300)[:, None]
         normals[rest] = np.column_stack((unit * np.sin(kappa)[:, None], np.cos(kappa)))
@@ -148,92 +129,77 @@ class DropCutter:
 
     def _dropped(self, points: FloatArray, threads: int | None) -> tuple[FloatArray, NDArray[np.int32]]:
         heights = np.empty(len(points))
-        elements = np.empty(len(points), dtype=np.int32)
-        grid = self._grid
+        touched = np.empty(len(points), dtype=np.int32)
+        in_parts(
+            lambda first, last: kernels.drop(self._cutter, points, first, last, heights, touched),
+            len(points),
+            threads=self._threads if threads is None else threads,
+        )
+        return heights, touched
 
-        def work(first: int, last: int) -> None:
-            kernels.drop(
-                points,
-                first,
-                last,
-                self.floor_mm,
-                self._parameters,
-                self._faces,
-                self._edges,
-                self.surface.vertices_mm,
-                grid.frame,
-                grid.columns,
-                grid.rows,
-                grid.begins,
-                grid.entries,
-                heights,
-                elements,
-            )
-
-        in_parts(work, len(points), threads=self._threads if threads is None else threads)
-        return heights, elements
-
-    def _listed(self) -> _Grid:
+    def _listed(self, elements: kernels.Elements, tool: Meridian) -> tuple[kernels.Grid, kernels.Lists]:
         """The grid of patches; cells are made larger while their lists would be too long."""
-        radius = float(self._parameters[6])
-        low, high = self.surface.low_mm - radius, self.surface.high_mm + radius
+        low, high = self.surface.low_mm - tool.radius, self.surface.high_mm + tool.radius
         extent = np.maximum(high[:2] - low[:2], 1e-3)
-        wanted = min(_MOST_CELLS, max(16.0, _CELLS_A_FACE * len(self.surface.triangles)))
+        wanted = min(_MOST_CELLS, max(16.0, _CELLS_A_FACE * len(elements.faces)))
         size = math.sqrt(float(extent[0] * extent[1]) / wanted)
         while True:
             size = max(size, float(extent.max()) / _MOST_CELLS)
             columns, rows = (int(n) for n in np.ceil(extent / size) + 1)
-            frame = np.array([low[0], low[1], size])
+            grid = kernels.Grid(float(low[0]), float(low[1]), size, columns, rows)
             counts = np.zeros((_LIST_PARTS, columns * rows), dtype=np.int64)
-            self._list(frame, columns, rows, counts, np.empty(0, dtype=np.int32), fill=False)
+            self._list(elements, tool, grid, counts)
             if counts.sum() <= _MOST_ENTRIES or columns * rows < 64:
                 break
             size *= 2.0
         ends = np.cumsum(counts.T.ravel()).reshape(-1, _LIST_PARTS)
         begins = np.concatenate(([0], ends[:, -1]))
         entries = np.empty(int(begins[-1]), dtype=np.int32)
-        self._list(frame, columns, rows, np.ascontiguousarray(ends.T - counts), entries, fill=True)
-        return _Grid(frame, columns, rows, begins, entries)
+        self._list(elements, tool, grid, np.ascontiguousarray(ends.T - counts), entries)
+        return grid, kernels.Lists(begins, entries)
 
     def _list(
         self,
-        frame: FloatArray,
-        columns: int,
-        rows: int,
+        elements: kernels.Elements,
+        tool: Meridian,
+        grid: kernels.Grid,
         counts: NDArray[np.int64],
-        entries: NDArray[np.int32],
-        *,
-        fill: bool,
+        entries: NDArray[np.int32] | None = None,
     ) -> None:
+        """Count elements in cells, or enter them, in parts side by side."""
+        into = np.empty(0, dtype=np.int32) if entries is None else entries
+        listings = [kernels.Listing(entries is not None, counts[part], into) for part in range(_LIST_PARTS)]
         run_all(
-            [partial(self._list_part, k, frame, columns, rows, fill, counts[k], entries) for k in range(_LIST_PARTS)],
+            [partial(self._list_part, elements, tool, grid, part, own) for part, own in enumerate(listings)],
             self._threads,
         )
 
     def _list_part(
         self,
+        elements: kernels.Elements,
+        tool: Meridian,
+        grid: kernels.Grid,
         part: int,
-        frame: FloatArray,
-        columns: int,
-        rows: int,
-        fill: bool,
-        counts: NDArray[np.int64],
-        entries: NDArray[np.int32],
+        listing: kernels.Listing,
     ) -> None:
-        surface, tool = self.surface, self._parameters
-        faces, edges, vertices = len(self._faces), len(self._edges), len(surface.vertices_mm)
+        surface = self.surface
         (f0, f1), (e0, e1), (v0, v1) = [
-            (n * part // _LIST_PARTS, n * (part + 1) // _LIST_PARTS) for n in (faces, edges, vertices)
+            (n * part // _LIST_PARTS, n * (part + 1) // _LIST_PARTS)
+            for n in (len(elements.faces), len(elements.edges), len(elements.vertices))
         ]
-        list_faces = partial(kernels.list_faces, surface.vertices_mm, surface.triangles, self._faces, f0, f1)
-        list_edges = partial(kernels.list_edges, self._edges, surface.edge_cones_rad, e0, e1, faces, tool)
-        list_vertices = partial(
-            kernels.list_vertices, surface.vertices_mm, surface.vertex_cones, v0, v1, faces + edges, tool
-        )
-        list_faces(frame, columns, rows, fill, counts, entries)
+        kernels.list_faces(elements, f0, f1, grid, listing)
         if self.tool is not None:
-            list_edges(frame, columns, rows, fill, counts, entries)
-            list_vertices(frame, columns, rows, fill, counts, entries)
+            kernels.list_edges(elements, surface.edge_cones_rad, e0, e1, tool, grid, listing)
+            kernels.list_vertices(elements, surface.vertex_cones, v0, v1, tool, grid, listing)
+
+
+def _elements(surface: Surface, tool: Meridian) -> kernels.Elements:
+    """What the tool can touch of a surface, as kernels take it."""
+    faces = np.empty((len(surface.triangles), kernels.FACE_COLUMNS))
+    edges = np.empty((len(surface.ends), kernels.EDGE_COLUMNS))
+    kernels.face_patches(surface.vertices_mm, surface.triangles, surface.normals, tool, faces)
+    kernels.edge_patches(surface.vertices_mm, surface.ends, edges)
+    return kernels.Elements(faces, edges, surface.vertices_mm, surface.triangles)
 
 
 def _plan_points(points_mm: ArrayLike) -> FloatArray:

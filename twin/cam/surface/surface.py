@@ -77,19 +77,16 @@ def surface_of_mesh(vertices_mm: FloatArray, triangles: NDArray[np.int64], *, th
     faces = np.ascontiguousarray(triangles, dtype=np.int64)
     normals = np.empty((len(faces), 3))
     kernels.face_slopes(vertices, faces, normals)
-    order = np.empty(3 * len(faces), dtype=np.int64)
-    begins = np.empty(3 * len(faces) + 1, dtype=np.int64)
-    edges = kernels.edge_runs(faces, len(vertices), order, begins)
-    ends, edge_cones = np.empty((edges, 2), dtype=np.int64), np.empty((edges, 2))
-    in_parts(
-        lambda a, b: kernels.edge_cones(vertices, faces, order, begins, a, b, ends, edge_cones), edges, threads=threads
-    )
-    starts = np.zeros(len(vertices) + 1, dtype=np.int64)
-    listed = np.empty(2 * edges, dtype=np.int64)
-    most = kernels.vertex_edges(ends, len(vertices), starts, listed)
+    mesh = kernels.Mesh(vertices, faces)
+    sides = kernels.Groups(np.empty(3 * len(faces), dtype=np.int64), np.empty(3 * len(faces) + 1, dtype=np.int64))
+    count = kernels.edge_sides(faces, len(vertices), sides)
+    ends, edge_cones = np.empty((count, 2), dtype=np.int64), np.empty((count, 2))
+    in_parts(lambda a, b: kernels.edge_cones(mesh, sides, a, b, ends, edge_cones), count, threads=threads)
+    edges = kernels.Groups(np.empty(2 * count, dtype=np.int64), np.zeros(len(vertices) + 1, dtype=np.int64))
+    most = kernels.vertex_edges(ends, len(vertices), edges)
     vertex_cones = np.empty((len(vertices), 4))
     in_parts(
-        lambda a, b: kernels.vertex_cones(vertices, ends, starts, listed, most, a, b, vertex_cones),
+        lambda a, b: kernels.vertex_cones(vertices, ends, edges, most, a, b, vertex_cones),
         len(vertices),
         threads=threads,
     )

@@ -1,4 +1,4 @@
-"""What of a triangle surface a tool coming from above can rest on; compiled.
+"""Normal cones of a triangle surface: in which directions a tool coming from above can rest on it; compiled.
 
 A tool rests on an edge only where its outward normal there has no component into any triangle of the edge, and on a
 vertex only where that holds for all its edges: the normal cone of the point. Directions n point from the surface to
@@ -9,6 +9,7 @@ triangles at an edge and triangles without area are all the same rule.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,23 +21,48 @@ from twin.jit import njit
 _THIN_RAD = 1e-10
 #: Cones are widened by this against rounding; more elements are asked, never a wrong height found.
 _WIDEN_RAD = 1e-9
+#: So many numbers are sorted by insertion.
+_FEW = 64
 #: Steepest direction of a vertex cone, as a slope; what lies beyond is taken as level.
 _STEEPEST = 1e6
 
 
+class Mesh(NamedTuple):
+    """Vertices, shape (n, 3), and the corners of each triangle, shape (m, 3)."""
+
+    vertices: FloatArray
+    triangles: NDArray[np.int64]
+
+
+class Groups(NamedTuple):
+    """Numbers in groups: group k has ``members[begins[k] : begins[k + 1]]``."""
+
+    members: NDArray[np.int64]
+    begins: NDArray[np.int64]
+
+
+class _Polygon(NamedTuple):
+    """A convex polygon: coordinates of its corners, of which the first ``used`` are valid."""
+
+    x: FloatArray
+    y: FloatArray
+    used: int
+
+
 @njit
-def edge_runs(triangles: NDArray[np.int64], vertices: int, order: NDArray[np.int64], begins: NDArray[np.int64]) -> int:
+def edge_sides(triangles: NDArray[np.int64], vertices: int, sides: Groups) -> int:
     """Group the sides of triangles by the edge they lie on.
 
-    Side 3 t + j joins corners j and j + 1 of triangle t; sides with one vertex twice are left out.
+    Side 3 t + j joins corners j and j + 1 of triangle t; sides with one vertex twice are omitted.
 
     Args:
-        order: shape (3 m,), filled with sides, edge by edge.
-        begins: shape (3 m + 1,), filled with where each edge's sides begin, and the end.
+        sides: members of shape (3 m,), filled with sides, edge by edge; begins of shape (3 m + 1,), filled with where
+            each edge's sides begin, and the end.
 
     Returns:
-        how many edges there are.
+        number of edges.
     """
+    order, begins = sides
     starts = np.zeros(vertices + 1, dtype=np.int64)
     high = np.empty(3 * len(triangles), dtype=np.int64)
     for t in range(len(triangles)):
@@ -58,16 +84,7 @@ def edge_runs(triangles: NDArray[np.int64], vertices: int, order: NDArray[np.int
     edges = 0
     for v in range(vertices):
         first, last = starts[v], starts[v + 1]
-        if last - first > 64:
-            part = order[first:last].copy()
-            order[first:last] = part[np.argsort(high[part], kind="mergesort")]
-        else:
-            for i in range(first + 1, last):
-                side, k = order[i], i
-                while k > first and high[order[k - 1]] > high[side]:
-                    order[k] = order[k - 1]
-                    k -= 1
-                order[k] = side
+        _sort_by(order[first:last], high)
         for i in range(first, last):
             if i == first or high[order[i]] != high[order[i - 1]]:
                 begins[edges] = i
@@ -77,24 +94,33 @@ def edge_runs(triangles: NDArray[np.int64], vertices: int, order: NDArray[np.int
 
 
 @njit
-def edge_cones(
-    vertices: FloatArray,
-    triangles: NDArray[np.int64],
-    order: NDArray[np.int64],
-    begins: NDArray[np.int64],
-    first: int,
-    last: int,
-    ends: NDArray[np.int64],
-    cones: FloatArray,
-) -> None:
+def _sort_by(order: NDArray[np.int64], keys: NDArray[np.int64]) -> None:
+    """Sort numbers by their keys, those of equal keys as they were; most often they are few."""
+    if len(order) > _FEW:
+        part = order.copy()
+        order[:] = part[np.argsort(keys[part], kind="mergesort")]
+        return
+    for i in range(1, len(order)):
+        number, k = order[i], i
+        while k > 0 and keys[order[k - 1]] > keys[number]:
+            order[k] = order[k - 1]
+            k -= 1
+        order[k] = number
+
+
+@njit
+def edge_cones(mesh: Mesh, sides: Groups, first: int, last: int, ends: NDArray[np.int64], cones: FloatArray) -> None:
     """Ends and normal cone of edges ``first`` to ``last - 1``.
 
     In the plane across the edge, with a = level direction and b = the upward one, normals are cos(phi) a + sin(phi) b.
 
     Args:
+        sides: from `edge_sides`.
         ends: shape (e, 2), filled.
         cones: shape (e, 2), filled with the least and largest phi in [0, pi]; least > largest where nothing rests.
     """
+    vertices, triangles = mesh
+    order, begins = sides
     for e in range(first, last):
         side = order[begins[e]]
         t, j = side // 3, side % 3
@@ -138,16 +164,17 @@ def edge_cones(
 
 
 @njit
-def vertex_edges(ends: NDArray[np.int64], vertices: int, begins: NDArray[np.int64], listed: NDArray[np.int64]) -> int:
+def vertex_edges(ends: NDArray[np.int64], vertices: int, edges: Groups) -> int:
     """List every vertex's edges.
 
     Args:
-        begins: shape (n + 1,) zeros, filled with where each vertex's edges begin.
-        listed: shape (2 e,), filled with edges.
+        edges: members of shape (2 e,), filled; begins of shape (n + 1,), zeros, filled with where each vertex's edges
+            begin.
 
     Returns:
         the largest number of edges at one vertex.
     """
+    listed, begins = edges
     for e in range(len(ends)):
         begins[ends[e, 0] + 1] += 1
         begins[ends[e, 1] + 1] += 1
@@ -168,8 +195,7 @@ def vertex_edges(ends: NDArray[np.int64], vertices: int, begins: NDArray[np.int6
 def vertex_cones(
     vertices: FloatArray,
     ends: NDArray[np.int64],
-    begins: NDArray[np.int64],
-    listed: NDArray[np.int64],
+    edges: Groups,
     most: int,
     first: int,
     last: int,
@@ -180,8 +206,11 @@ def vertex_cones(
     Normals are (x, y, 1) up to length: every edge is a half plane, and the cone a convex polygon that is clipped.
 
     Args:
+        ends: from `edge_cones`.
+        edges, most: from `vertex_edges`.
         cones: shape (n, 4), filled with least x, largest x, least y, largest y; least > largest where nothing rests.
     """
+    listed, begins = edges
     px, py = np.empty(most + 8), np.empty(most + 8)
     qx, qy = np.empty(most + 8), np.empty(most + 8)
     for v in range(first, last):
@@ -199,28 +228,35 @@ def vertex_cones(
             if length == 0.0:
                 continue
             ex, ey, ez = ex / length, ey / length, ez / length + _THIN_RAD
-            kept = 0
-            x0, y0 = px[count - 1], py[count - 1]
-            f0 = ex * x0 + ey * y0 + ez
-            for k in range(count):
-                x1, y1 = px[k], py[k]
-                f1 = ex * x1 + ey * y1 + ez
-                if (f0 <= 0.0) != (f1 <= 0.0):
-                    s = f0 / (f0 - f1)
-                    qx[kept], qy[kept] = x0 + s * (x1 - x0), y0 + s * (y1 - y0)
-                    kept += 1
-                if f1 <= 0.0:
-                    qx[kept], qy[kept] = x1, y1
-                    kept += 1
-                x0, y0, f0 = x1, y1, f1
+            count = _clipped(_Polygon(px, py, count), ex, ey, ez, qx, qy)
             px, qx = qx, px
             py, qy = qy, py
-            count = kept
             if count == 0:
                 break
         if count > 0:
             cones[v, 0], cones[v, 1] = px[:count].min(), px[:count].max()
             cones[v, 2], cones[v, 3] = py[:count].min(), py[:count].max()
+
+
+@njit
+def _clipped(polygon: _Polygon, ex: float, ey: float, ez: float, x: FloatArray, y: FloatArray) -> int:
+    """The part of a convex polygon where ex x + ey y + ez <= 0; fills in its corners and returns their number."""
+    px, py, count = polygon
+    kept = 0
+    x0, y0 = px[count - 1], py[count - 1]
+    f0 = ex * x0 + ey * y0 + ez
+    for k in range(count):
+        x1, y1 = px[k], py[k]
+        f1 = ex * x1 + ey * y1 + ez
+        if (f0 <= 0.0) != (f1 <= 0.0):
+            s = f0 / (f0 - f1)
+            x[kept], y[kept] = x0 + s * (x1 - x0), y0 + s * (y1 - y0)
+            kept += 1
+        if f1 <= 0.0:
+            x[kept], y[kept] = x1, y1
+            kept += 1
+        x0, y0, f0 = x1, y1, f1
+    return kept
 
 
 @njit
