@@ -265,7 +265,7 @@ def test_on_a_convex_body_most_edges_of_a_flat_side_are_left_out() -> None:
     [
         (np.empty((0, 3, 3)), "surface: triangles of shape (0, 3, 3); expected (m, 3, 3) with m above 0"),
         (np.zeros((4, 3)), "surface: triangles of shape (4, 3); expected (m, 3, 3) with m above 0"),
-        (np.full((2, 3, 3), np.nan), "surface: triangle 1 of 2 has a corner that is no finite number"),
+        (np.full((2, 3, 3), np.nan), "surface: triangle 1 of 2 has a corner that is not finite"),
     ],
 )
 def test_triangles_that_are_none_are_refused(triangles: FloatArray, message: str) -> None:
@@ -275,7 +275,7 @@ def test_triangles_that_are_none_are_refused(triangles: FloatArray, message: str
 
 
 def test_a_floor_that_is_no_number_is_refused() -> None:
-    with pytest.raises(ToolError, match="floor_mm is no number"):
+    with pytest.raises(ToolError, match="floor_mm is not a number"):
         DropCutter(square(), ToolShape(disc_mm=1.0, corner_mm=0.0, height_mm=3.0), floor_mm=math.nan)
 
 

@@ -1,7 +1,7 @@
 """Contour paths: at every level the outlines of the inflated part's section, and further ones outside of them.
 
 The tri-slice paper, section 3.1: xy slices of the inflated part are tool paths; expanded by the radial depth of cut
-they are the layers before them. The part is inflated by the whole tool, shank and all: what lies above a level counts.
+they are the layers before them. The part is inflated by the whole tool, shank and all: the body above a level counts.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from twin.geometry.polygons.shapes import to_shape
 
 #: A cleared area needs no more layers than this; more are a mistake in the radial depth.
 MOST_LAYERS = 10_000
-#: Lines no farther apart than this many radial depths lie beside each other.
-_BESIDE = 1.5
+#: Lines no farther apart than this many radial depths are neighbours.
+_NEXT = 1.5
 #: Part of the axial depth by which levels may be farther apart for rounding.
 _SLACK = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Level:
-    """The tool's room at one height.
+    """Where the tool may be at one height.
 
     Attributes:
         z_mm: height of the tip.
@@ -59,7 +59,7 @@ class ContourOptions:
         layers: outlines a level, the part's own included; None for as many as clear the window.
         radial_depth_mm: distance of the layers.
         climb: part on the right of the feed, else on the left.
-        chord_mm: how far chords may stand off the arcs of expanded outlines, outwards.
+        chord_mm: how far chords may lie off the arcs of expanded outlines, outwards.
     """
 
     window: Area
@@ -123,13 +123,13 @@ def _level_passes(level: Level, options: ContourOptions, top_mm: float, layer: i
 def _in_order(
     lines: list[tuple[int, FloatArray]], radial_depth_mm: float, at: FloatArray | None
 ) -> Iterator[FloatArray]:
-    """Every line after those of the next outer layer beside it; among those that may come, the nearest.
+    """Every line after its neighbours of the next outer layer; among those that may come, the nearest.
 
     Args:
         lines: with the numbers of their layers.
         at: where the last line ended.
     """
-    waits = _waiting(lines, _BESIDE * radial_depth_mm)
+    waits = _waiting(lines, _NEXT * radial_depth_mm)
     left = set(range(len(lines)))
     while left:
         ready = sorted(i for i in left if not waits[i] & left)
@@ -148,16 +148,16 @@ def _starts(line: FloatArray) -> FloatArray:
     return line if np.all(line[0] == line[-1]) else line[:1]
 
 
-def _waiting(lines: list[tuple[int, FloatArray]], beside_mm: float) -> list[set[int]]:
-    """For each line the lines of the next outer layer that lie beside it."""
+def _waiting(lines: list[tuple[int, FloatArray]], apart_mm: float) -> list[set[int]]:
+    """For each line its neighbours of the next outer layer."""
     layers: dict[int, list[int]] = {}
     for i, (k, _) in enumerate(lines):
         layers.setdefault(k, []).append(i)
-    return [{j for j in layers.get(k + 1, []) if line_distance_mm(line, lines[j][1]) <= beside_mm} for k, line in lines]
+    return [{j for j in layers.get(k + 1, []) if line_distance_mm(line, lines[j][1]) <= apart_mm} for k, line in lines]
 
 
 def _from_nearest(line: FloatArray, at: FloatArray | None) -> FloatArray:
-    """A closed line begun at its point nearest to a place; an open one as it is."""
+    """A closed line begun at its point nearest to a position; an open one as is."""
     if at is None or np.any(line[0] != line[-1]):
         return line
     k = int(np.argmin(np.linalg.norm(line - at, axis=1)))
@@ -169,12 +169,12 @@ def _outside(point: FloatArray, stock: Area) -> bool:
 
 
 class OutlineLinkPlanner:
-    """The room beside the outlines, see `twin.cam.path.linking.LinkPlanner`.
+    """Links next to the outlines, see `twin.cam.path.linking.LinkPlanner`.
 
     Args:
         levels: from the highest to the lowest.
         window: where the tip may be.
-        top_mm: height of nothing but air.
+        top_mm: height above which there is only air.
     """
 
     def __init__(self, levels: Sequence[Level], window: Area, top_mm: float) -> None:
@@ -193,7 +193,7 @@ class OutlineLinkPlanner:
         return np.array([start_mm, over] if over[2] == end_mm[2] else [start_mm, over, end_mm])
 
     def free(self, points_mm: FloatArray) -> bool:
-        """Whether a level line lies in the free area of its level; False for heights that are no level."""
+        """Whether a level line lies in the free area of its level; False for heights that are not a level."""
         z = float(points_mm[0, 2])
         level = self._levels.get(z)
         if level is None or np.any(points_mm[:, 2] != z):

@@ -1,6 +1,6 @@
 """Finishing by scanning lines: rows over the part's exact offset surface (the mold paper, section 2.3).
 
-The tool is dropped on the triangles along each row. Between two places the row is divided until its straight pieces
+The tool is dropped on the triangles along each row. Between two points the row is divided until its straight pieces
 keep to the surface within a part of the chord tolerance; arcs and longer pieces are fitted within the rest of it.
 """
 
@@ -42,11 +42,11 @@ class FinishingOptions:
     Attributes:
         stepover_mm: distance of rows in the plan.
         chord_mm: how far the path may lie from the exact one.
-        pitch_mm: distance of the places dropped first along a row.
+        pitch_mm: distance of the first points along a row.
         direction: of the rows.
         steep_deg: surfaces steeper than this get level lines instead of rows; None for rows everywhere.
-        least_mm: material thinner than this is no reason to go there.
-        bridge_mm: gaps without material shorter than this are run through.
+        least_mm: thinner material is not cut.
+        bridge_mm: shorter gaps without material are bridged.
         feeds: of the stage.
     """
 
@@ -65,8 +65,8 @@ class Row:
     """One scanning line.
 
     Attributes:
-        at_mm: its place across.
-        along_mm: places along it, increasing, shape (n,).
+        at_mm: its position across.
+        along_mm: positions along it, increasing, shape (n,).
         z_mm: tip heights there, shape (n,).
     """
 
@@ -94,7 +94,7 @@ def scan_rows(cutter: DropCutter, low_mm: FloatArray, high_mm: FloatArray, optio
     at = np.tile(along, len(across))
     z = _drop(cutter, at, across[row], u)
     tolerance = _SHARE * options.chord_mm
-    # the pieces still to be looked at, by number of their first place
+    # the pieces still to be checked, by number of their first point
     same = np.append(row[1:] == row[:-1], False)
     pieces = np.flatnonzero(same)
     left = np.column_stack((at[pieces], at[pieces + 1], z[pieces], z[pieces + 1]))
@@ -146,10 +146,10 @@ def _gathered(across: FloatArray, rows: NDArray[np.int64], ats: FloatArray, zs: 
 def row_chains(
     rows: Sequence[Row], cutter: DropCutter, stock: Dexels, options: FinishingOptions, chart: SteepMap | None = None
 ) -> list[list[FloatArray]]:
-    """What of the rows cuts, to and fro: each chain holds runs of neighbouring rows that lie beside each other.
+    """The parts of the rows that cut, in zigzag: each chain holds runs of neighbouring rows that overlap.
 
     Args:
-        chart: steep places, where there are no rows.
+        chart: steep areas, where there are no rows.
     """
     assert cutter.tool is not None
     u = 0 if options.direction == "x" else 1
@@ -164,9 +164,9 @@ def row_chains(
             wanted &= ~chart.at(chart.inner, plan)
         here: list[list[FloatArray]] = []
         for run in _runs(line, wanted, options.bridge_mm):
-            beside = [c for c in last if _overlap(c[-1][:, u], run[:, u])]
-            if len(beside) == 1 and all(beside[0] is not c for c in here):
-                chain = beside[0]
+            nearby = [c for c in last if _overlap(c[-1][:, u], run[:, u])]
+            if len(nearby) == 1 and all(nearby[0] is not c for c in here):
+                chain = nearby[0]
                 back = np.linalg.norm(run[-1] - chain[-1][-1]) < np.linalg.norm(run[0] - chain[-1][-1])
                 chain.append(run[::-1] if back else run)
             else:
@@ -197,7 +197,7 @@ def _runs(line: FloatArray, wanted: NDArray[np.bool_], bridge_mm: float) -> Iter
 def steep_chains(
     cutter: DropCutter, stock: Dexels, options: FinishingOptions, chart: SteepMap
 ) -> list[list[FloatArray]]:
-    """What of the level lines cuts, a chain for each wall, from its top."""
+    """The parts of the level lines that cut, a chain for each wall, from its top."""
     assert cutter.tool is not None
     chains: list[list[FloatArray]] = []
     walls = list(level_lines(cutter, chart, options.stepover_mm, _SHARE * options.chord_mm))
@@ -232,19 +232,19 @@ def in_order(
 
 
 class RowLinkPlanner:
-    """Ways over the part between rows, see `twin.cam.path.linking.LinkPlanner`.
+    """Links over the part between rows, see `twin.cam.path.linking.LinkPlanner`.
 
     Args:
         cutter: the finishing tool over the part.
         stock: before the stage.
-        step_mm: distance of the places that are asked.
+        step_mm: distance of the points that are checked.
     """
 
     def __init__(self, cutter: DropCutter, stock: Dexels, step_mm: float) -> None:
         self._cutter, self._stock, self._step = cutter, stock, step_mm
 
     def between(self, start_mm: FloatArray, end_mm: FloatArray) -> FloatArray:
-        """Straight in the plan at the height of the highest place on the way."""
+        """Straight in the plan at the height of the highest point on the link."""
         z = max(float(self._cutter.drop(self._along(start_mm, end_mm), threads=1).max()), start_mm[2], end_mm[2])
         over = [[start_mm[0], start_mm[1], z], [end_mm[0], end_mm[1], z]]
         line = np.array([start_mm, *over, end_mm])
@@ -256,7 +256,7 @@ class RowLinkPlanner:
         return bool(np.all(points_mm[:, 2] >= self._cutter.drop(points_mm[:, :2], threads=1)))
 
     def clear_z_mm(self, start_mm: FloatArray, end_mm: FloatArray) -> float:
-        """Lowest tip that touches nothing of the stock on the way."""
+        """Lowest tip that touches nothing of the stock on the link."""
         assert self._cutter.tool is not None
         line = self._along(start_mm, end_mm)
         highest = float(stock_heights(self._stock, self._cutter.tool, line, threads=1).max())

@@ -1,7 +1,7 @@
-"""Lines of a level that cut something: rings or rows of a free area, without what would run through air.
+"""Lines of a level that cut something: rings or rows of a free area, without air cuts.
 
-Lines are taken one after another. Where the tool would cut less than a least depth it is left out; what a line cuts is
-taken from the stock before the next one is looked at. So each place is cut once.
+Lines are taken one after another. Stretches where the tool would cut less than a least depth are omitted; the
+cut of a line is removed from the stock before the next one is considered. So each position is cut once.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from twin.tools.shape import ToolShape
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CutOptions:
-    """What counts as cutting.
+    """Which stretches count as cutting.
 
     Attributes:
         least_mm: material thinner than this above the tool is left.
-        resolution_mm: distance of the places that are looked at.
-        bridge_mm: gaps in a line shorter than this are run through.
+        resolution_mm: distance of the points that are checked.
+        bridge_mm: shorter gaps in a line are bridged.
     """
 
     least_mm: float
@@ -74,10 +74,10 @@ def row_layers(free_area: FreeArea, radial_depth_mm: float) -> Iterator[list[Flo
 def cuts_of(
     layers: Iterable[list[FloatArray]], z_mm: float, tool: ToolShape, stock: Dexels, options: CutOptions
 ) -> Iterator[Cut]:
-    """What of a level's lines cuts; the stock is lowered by it.
+    """The parts of a level's lines that cut; the stock is lowered by them.
 
     Args:
-        layers: lines in the plan; those of one layer are looked at together.
+        layers: lines in the plan; those of one layer are checked together.
     """
     for row, lines in enumerate(layers):
         fine = [subdivided(line, options.resolution_mm) for line in lines]

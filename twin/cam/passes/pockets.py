@@ -33,10 +33,10 @@ class Pocket:
 
 
 def pocket_forest(free_areas: Sequence[FreeArea], least_mm2: float) -> list[Pocket]:
-    """The pockets of the first level in which each stands, with those below.
+    """The pockets of the first level that each belongs to, with those below.
 
     Args:
-        least_mm2: pockets smaller than this are left out, for a tool cannot enter them; what is below them too.
+        least_mm2: pockets smaller than this are omitted, for a tool cannot enter them; those below them too.
     """
     tops: list[Pocket] = []
     last: list[Pocket] = []
@@ -54,15 +54,15 @@ def pocket_forest(free_areas: Sequence[FreeArea], least_mm2: float) -> list[Pock
 
 
 def in_depth(tops: Sequence[Pocket], start_mm: FloatArray) -> Iterator[Pocket]:
-    """Each pocket before those below it, of those beside each other the nearest first."""
+    """Each pocket before those below it; of neighbours the nearest first."""
     at = start_mm
     left = list(tops)
     while left:
-        places = [_nearest(p.area, at) for p in left]
-        k = int(np.argmin([np.linalg.norm(p - at) for p in places]))
+        points = [_nearest(p.area, at) for p in left]
+        k = int(np.argmin([np.linalg.norm(p - at) for p in points]))
         pocket = left.pop(k)
         yield pocket
-        at = places[k]
+        at = points[k]
         for lower in in_depth(pocket.below, at):
             yield lower
             at = _nearest(lower.area, at)

@@ -1,7 +1,7 @@
-"""The chain to compare with: scanning lines throughout, air cuts left out (the mold paper, section 3).
+"""The raster baseline: scanning rows throughout, without air cuts (the mold paper, section 3).
 
-Every level is covered by rows along x. Neighbouring rows are joined on the level where nothing is in the
-way; else the tool goes up and plunges.
+Every level is covered by rows along x. Neighbouring rows are joined on the level where nothing is in
+between; else the tool retracts and plunges.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from twin.cam.path.toolpath import ToolPath
 from twin.cam.stock.dexel import Dexels
 from twin.tools.shape import ToolShape
 
-#: A way to the next row may be longer than their distance by this factor.
+#: A link to the next row may be longer than their distance by this factor.
 _STAY = 2.5
 
 
@@ -30,7 +30,7 @@ def row_cuts(
     least_mm: float,
     report: Report | None = None,
 ) -> list[LevelCuts]:
-    """What of the levels' rows cuts, from the top; the stock is lowered by it."""
+    """The parts of the levels' rows that cut, from the top; the stock is lowered by them."""
     levels = roughing_levels(space, options)
     free_areas = level_free_areas(space.part, tool, levels, options.allowance_mm, space.window(tool.max_radius_mm))
     cutting = CutOptions(
@@ -47,16 +47,17 @@ def row_cuts(
 
 
 def row_passes(levels: Sequence[LevelCuts], *, one_way: bool) -> Iterator[Pass]:
-    """Level by level, row by row; every second row the other way, unless all shall run one way.
+    """Level by level, row by row; every second row in the other direction, unless all run in one.
 
-    Rows go on towards +y, so the material is on the left of a row towards +x: one way is -x, which is climb milling.
+    Rows follow each other towards +y, so the material is on the left of a row towards +x: the one direction is -x,
+    which is climb milling.
     """
     for number, one in enumerate(levels):
         rows: dict[int, list[Pass]] = {}
         for cut in one.cuts:
-            turned = one_way or cut.row % 2 == 1
-            points = cut.points_mm[::-1] if turned else cut.points_mm
-            top = cut.top_mm[1 if turned else 0]
+            reversed_row = one_way or cut.row % 2 == 1
+            points = cut.points_mm[::-1] if reversed_row else cut.points_mm
+            top = cut.top_mm[1 if reversed_row else 0]
             rows.setdefault(cut.row, []).append(
                 Pass(points_mm=points, top_mm=top if top > one.z_mm else None, layer=number)
             )
@@ -78,7 +79,7 @@ def scanned(
     Args:
         levels: from `row_cuts`.
         before: the stock as the stage finds it.
-        one_way: whether all rows run one way, for climb milling.
+        one_way: whether all rows run in one direction, for climb milling.
     """
     linking = LinkOptions(
         safe_z_mm=space.safe_z_mm,

@@ -25,8 +25,8 @@ Drop = Callable[[FloatArray], FloatArray]
 _LEAST_RADIUS = 0.15
 #: A link that stays down may be longer than the radial depth by this factor.
 _STAY = 2.5
-#: What touches the stock's sides by less than this is beside it, mm.
-_BESIDE_MM = 0.1
+#: A tool that reaches into the stock's sides by less than this does not touch it, mm.
+_TOUCH_MM = 0.1
 #: Arcs and lines instead of points, mm.
 FIT = FitOptions(tolerance_mm=0.01, gouge_mm=0.005)
 
@@ -36,7 +36,7 @@ class StageFeeds:
     """Feeds of one stage, mm/min.
 
     Attributes:
-        cut, plunge, link: in the cut, straight down, and on the way through cleared places.
+        cut, plunge, link: in the cut, straight down, and through cleared areas.
         ramp: on helices and ramps into material.
     """
 
@@ -48,7 +48,7 @@ class StageFeeds:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Workspace:
-    """What all stages have in common.
+    """Part, stock and heights that all stages share.
 
     Attributes:
         part: the part.
@@ -69,7 +69,7 @@ class Workspace:
         return float(self.high_mm[2])
 
     def window(self, by_mm: float) -> Area:
-        """The stock's outline, so much larger on all sides."""
+        """The stock's outline, enlarged by this much on all sides."""
         return box_area((self.low_mm[:2] - by_mm).tolist(), (self.high_mm[:2] + by_mm).tolist())
 
 
@@ -95,7 +95,7 @@ class RoughingOptions:
 
 
 class LevelLinkPlanner:
-    """The free area of all levels, see `twin.cam.path.linking.LinkPlanner`.
+    """Links in the free areas of all levels, see `twin.cam.path.linking.LinkPlanner`.
 
     Args:
         levels_mm: decreasing.
@@ -119,7 +119,7 @@ class LevelLinkPlanner:
         return free_area is not None and free_area.holds(points_mm[:, :2])
 
     def clear_z_mm(self, start_mm: FloatArray, end_mm: FloatArray) -> float:
-        """The lowest level above the start whose free area holds the way: it was cleared before."""
+        """The lowest level above the start whose free area holds the link: it was cleared before."""
         line = np.array([start_mm[:2], end_mm[:2]])
         low = max(float(start_mm[2]), min(self._levels)) + 1e-9
         for z in reversed(self._levels):
@@ -129,7 +129,7 @@ class LevelLinkPlanner:
 
 
 def roughing_levels(space: Workspace, options: RoughingOptions) -> list[float]:
-    """Heights of the tip from the first cut down to the part's lowest place, decreasing."""
+    """Heights of the tip from the first cut down to the part's lowest point, decreasing."""
     bottom = float(space.part.vertices_mm[:, 2].min()) + options.allowance_mm
     count = max(1, math.ceil((space.top_mm - bottom) / options.axial_depth_mm - 1e-9))
     return [max(bottom, space.top_mm - options.axial_depth_mm * (k + 1)) for k in range(count)]
@@ -169,7 +169,7 @@ def _passes(
 ) -> Iterator[Pass]:
     least = math.pi * (_LEAST_RADIUS * tool.max_radius_mm) ** 2
     stock = FreeArea(space.window(0.0))
-    touching = FreeArea(grown(space.window(0.0), tool.max_radius_mm - _BESIDE_MM, CHORD_MM))
+    touching = FreeArea(grown(space.window(0.0), tool.max_radius_mm - _TOUCH_MM, CHORD_MM))
     at = space.low_mm[:2]
     for number, pocket in enumerate(in_depth(pocket_forest(free_areas, least), at)):
         closed = stock.holds(next(borders(pocket.area)))
@@ -183,7 +183,7 @@ def _passes(
 
 
 def _in_stock(ring: FloatArray, touching: FreeArea, resolution_mm: float) -> Iterator[FloatArray]:
-    """What of a ring touches the stock, with a step outside of it at both ends; the whole ring where all of it does."""
+    """The parts of a ring that touch the stock, with a step outside at both ends; the whole ring where all does."""
     if touching.holds(ring):
         yield ring
         return
@@ -206,7 +206,7 @@ def _in_stock(ring: FloatArray, touching: FreeArea, resolution_mm: float) -> Ite
 def lifted(passes: Sequence[Pass], drop: Drop, allowance_mm: float, resolution_mm: float) -> list[Pass]:
     """Passes no point of which lies below the tip's exact height on the part plus the allowance.
 
-    Points of all passes are dropped at once, subdivided to the resolution; a pass that lies above them stays as it is.
+    Points of all passes are dropped at once, subdivided to the resolution; a pass that lies above them is unchanged.
     """
     if not passes:
         return []

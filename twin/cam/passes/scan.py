@@ -26,12 +26,12 @@ _SLACK = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rows:
-    """Lines of the tool's tip over an inflated part.
+    """CL lines over an inflated part.
 
     Attributes:
         direction: axis along which rows run.
         at_mm: their positions across it, increasing, shape (n,).
-        lines_mm: for every row places along it, not decreasing, and heights of the tip, shape (m, 2).
+        lines_mm: for every row positions along it, not decreasing, and heights of the tip, shape (m, 2).
     """
 
     direction: Direction
@@ -44,12 +44,12 @@ class ScanOptions:
     """How rows become passes.
 
     Attributes:
-        top_mm: material's highest point: what of a row lies above it is left out.
-        zigzag: every second row the other way round; else all the same way.
+        top_mm: material's highest point: parts of a row above it are omitted.
+        zigzag: every second row in the opposite direction; else all in the same one.
         climb: whether rows run so that the uncut material, towards higher rows, is on their right; with zigzag the
             first row.
         layer: number of the layer, for linking.
-        approach_mm: places along the row, before its low and behind its high end, from which the tool may come
+        approach_mm: positions along the row, before its low and after its high end, from which the tool may come
             through nothing but air; None for an end without one.
     """
 
@@ -84,15 +84,15 @@ def _pass(run: FloatArray, ends: tuple[float, float], rows: Rows, options: ScanO
     """A run, approached from outside where it begins at an end of its row that allows it."""
     axis = 0 if rows.direction == "x" else 1
     approach: FloatArray | None = None
-    for end, place in zip(ends, options.approach_mm, strict=True):
-        if place is not None and run[0, axis] == end:
+    for end, position in zip(ends, options.approach_mm, strict=True):
+        if position is not None and run[0, axis] == end:
             approach = run[0].copy()
-            approach[axis] = place
+            approach[axis] = position
     return Pass(points_mm=run, top_mm=options.top_mm, layer=options.layer, approach_mm=approach)
 
 
 def _in_space(line: FloatArray, at_mm: float, rows: Rows) -> FloatArray:
-    """Tips in space from places along a row and heights."""
+    """Tips in space from positions along a row and heights."""
     across = np.full(len(line), at_mm)
     x, y = (line[:, 0], across) if rows.direction == "x" else (across, line[:, 0])
     return np.column_stack((x, y, line[:, 1]))

@@ -1,8 +1,8 @@
-"""Semi-finishing of what roughing left: cuts of each level where there is material, put in a short order.
+"""Semi-finishing of the rest material of roughing: cuts of each level where there is material, in a short order.
 
 The mold paper, section 2.2, takes remaining regions as points and orders them by a travelling salesman's tour. Here the
 pieces to be ordered are stretches of contour: each follows the wall and cuts all along, so what is saved by the order
-is not lost by crooked paths. The tour's cost is time.
+is not lost by bent paths. The tour's cost is time.
 """
 
 from __future__ import annotations
@@ -28,24 +28,24 @@ from twin.cam.stock.rest import stock_heights
 from twin.geometry.polygons.free_area import FreeArea
 from twin.tools.shape import ToolShape
 
-#: Told after each of so many steps: done and all.
+#: Called after each step with the steps done and all steps.
 Report = Callable[[int, int], None]
-#: Distance of the places asked along a way over the stock, mm.
-_WAY_STEP_MM = 0.5
+#: Distance of the points checked along a link over the stock, mm.
+_LINK_STEP_MM = 0.5
 #: Pitch of the map in which links look for walls, mm.
 _MAP_PITCH_MM = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SemiOptions:
-    """How remaining material is taken away.
+    """How rest material is removed.
 
     Attributes:
         axial_depth_mm, radial_depth_mm: distance of levels and of rings.
         allowance_mm: left on the part.
-        least_mm: material thinner than this is left to finishing.
-        resolution_mm: distance of the places that are looked at.
-        direction: ``both`` lets cuts run either way, ``climb`` with the part on the right only.
+        least_mm: material thinner than this is left for finishing.
+        resolution_mm: distance of the points that are checked.
+        direction: ``both`` lets cuts run in either direction, ``climb`` with the part on the right only.
         search: of the order.
         feeds: of the stage.
     """
@@ -71,7 +71,7 @@ class SemiOptions:
 
     @property
     def cutting(self) -> CutOptions:
-        """What counts as cutting."""
+        """Which stretches count as cutting."""
         return CutOptions(
             least_mm=self.least_mm, resolution_mm=self.resolution_mm, bridge_mm=2.0 * self.radial_depth_mm
         )
@@ -79,7 +79,7 @@ class SemiOptions:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LevelCuts:
-    """What is to be cut at one level.
+    """Cuts at one level.
 
     Attributes:
         z_mm: height of the tip.
@@ -93,7 +93,7 @@ class LevelCuts:
 
 
 class StockLinkPlanner(LevelLinkPlanner):
-    """The free area of all levels, and what stands over it; see `twin.cam.path.linking.LinkPlanner`.
+    """Links in the free areas of all levels, and over the stock; see `twin.cam.path.linking.LinkPlanner`.
 
     Args:
         stock: before the stage.
@@ -105,8 +105,8 @@ class StockLinkPlanner(LevelLinkPlanner):
         self._stock, self._tool = stock, tool
 
     def clear_z_mm(self, start_mm: FloatArray, end_mm: FloatArray) -> float:
-        """Lowest tip that touches nothing of the stock on the way."""
-        count = max(1, math.ceil(float(np.linalg.norm(end_mm[:2] - start_mm[:2])) / _WAY_STEP_MM))
+        """Lowest tip that touches nothing of the stock on the link."""
+        count = max(1, math.ceil(float(np.linalg.norm(end_mm[:2] - start_mm[:2])) / _LINK_STEP_MM))
         part = (np.arange(count + 1) / count)[:, None]
         line = start_mm[:2] * (1.0 - part) + end_mm[:2] * part
         highest = float(stock_heights(self._stock, self._tool, line, threads=1).max())
@@ -116,7 +116,7 @@ class StockLinkPlanner(LevelLinkPlanner):
 def remaining_cuts(
     space: Workspace, tool: ToolShape, options: SemiOptions, stock: Dexels, report: Report | None = None
 ) -> list[LevelCuts]:
-    """What of the levels' contours cuts, from the top; the stock is lowered by it."""
+    """The parts of the levels' contours that cut, from the top; the stock is lowered by them."""
     levels = roughing_levels(space, options.levels)
     window = space.window(tool.max_radius_mm)
     free_areas = level_free_areas(space.part, tool, levels, options.allowance_mm, window)
@@ -217,7 +217,7 @@ def semi_finishing(
     levels: Sequence[LevelCuts],
     before: Dexels,
 ) -> ToolPath:
-    """A path through what remains.
+    """A path through the rest material.
 
     Args:
         levels: from `remaining_cuts`.

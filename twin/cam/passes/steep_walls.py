@@ -24,7 +24,7 @@ from twin.cam.surface.drop_cutter import DropCutter
 _HALVINGS = 12
 #: Rounds of further points between those of the grid.
 _ROUNDS = 4
-#: Cells by which steep places are widened: for level lines, and less for where rows are left out, so that both overlap.
+#: Cells by which steep areas are widened: for level lines, and less where rows are omitted, so that both overlap.
 _WIDER, _LESS = 2, 1
 #: Fewer cells than this are no face, but noise.
 _LEAST_CELLS = 4
@@ -42,7 +42,7 @@ class SteepMap:
         x_mm, y_mm: of the grid, even, shape (nx,) and (ny,).
         z_mm: tip heights, shape (nx, ny).
         steep: shape (nx, ny).
-        wider, inner: steep places with some beside, and those that are not at their rim.
+        wider, inner: steep areas with a margin, and without their rim.
     """
 
     x_mm: FloatArray
@@ -70,14 +70,14 @@ class SteepMap:
         along = np.abs(np.diff(z, axis=0)) / (x[1] - x[0])
         across = np.abs(np.diff(z, axis=1)) / (y[1] - y[0])
         rise = np.hypot(
-            np.maximum(_before(along, 0), _behind(along, 0)), np.maximum(_before(across, 1), _behind(across, 1))
+            np.maximum(_before(along, 0), _after(along, 0)), np.maximum(_before(across, 1), _after(across, 1))
         )
         steep = rise > math.tan(math.radians(angle_deg))
         wider = np.asarray(ndimage.binary_dilation(steep, iterations=_WIDER))
         return cls(x, y, z, steep, wider, np.asarray(ndimage.binary_erosion(steep, iterations=_LESS)))
 
     def at(self, mask: NDArray[np.bool_], points_mm: FloatArray) -> NDArray[np.bool_]:
-        """What a mask of the grid says at places of the plan, shape (n, 2)."""
+        """Values of a mask of the grid at points of the plan, shape (n, 2)."""
         i = np.clip(np.rint((points_mm[:, 0] - self.x_mm[0]) / (self.x_mm[1] - self.x_mm[0])), 0, len(self.x_mm) - 1)
         j = np.clip(np.rint((points_mm[:, 1] - self.y_mm[0]) / (self.y_mm[1] - self.y_mm[0])), 0, len(self.y_mm) - 1)
         return np.asarray(mask[i.astype(np.int64), j.astype(np.int64)])
@@ -87,12 +87,12 @@ def _before(slope: FloatArray, axis: int) -> FloatArray:
     return np.concatenate((slope.take([0], axis), slope), axis=axis)
 
 
-def _behind(slope: FloatArray, axis: int) -> FloatArray:
+def _after(slope: FloatArray, axis: int) -> FloatArray:
     return np.concatenate((slope, slope.take([-1], axis)), axis=axis)
 
 
 def level_lines(cutter: DropCutter, chart: SteepMap, step_mm: float, tolerance_mm: float) -> Iterator[list[FloatArray]]:
-    """Lines of equal height on steep places, those of a wall together from the top, the part on their right.
+    """Lines of equal height on steep areas, those of a wall together from the top, the part on their right.
 
     Args:
         step_mm: distance of the heights.
@@ -110,7 +110,7 @@ def level_lines(cutter: DropCutter, chart: SteepMap, step_mm: float, tolerance_m
 
 
 def _faces(chart: SteepMap) -> Iterator[SteepMap]:
-    """Each connected steep place as a map of its own, no larger than it must be."""
+    """Each connected steep area as a map of its own, no larger than necessary."""
     labels, _ = ndimage.label(chart.steep, structure=np.ones((3, 3), dtype=np.int8))
     margin = _WIDER + 2
     for number, found in enumerate(ndimage.find_objects(labels)):
@@ -126,7 +126,7 @@ def _faces(chart: SteepMap) -> Iterator[SteepMap]:
 
 
 def _traced(part: SteepMap, step_mm: float) -> Iterator[tuple[float, FloatArray]]:
-    """Lines of a steep place on the grid, from just below its top to just above its foot, with their heights."""
+    """Lines of a steep area on the grid, from just below its top to just above its foot, with their heights."""
     z = part.z_mm[part.wider]
     low, high = float(z.min()), float(z.max())
     count = max(1, math.ceil((high - low) / step_mm))
@@ -138,7 +138,7 @@ def _traced(part: SteepMap, step_mm: float) -> Iterator[tuple[float, FloatArray]
 
 
 def _steep_runs(line: FloatArray, chart: SteepMap) -> Iterator[FloatArray]:
-    """What of a line lies on steep places."""
+    """The parts of a line on steep areas."""
     if len(line) < 3:
         return
     keep = chart.at(chart.wider, line)
@@ -181,13 +181,13 @@ def _exact(
         found, sure = _across(middle[off], normal[off], left[off], level[off], cutter, reach)
         where = first[off][sure] + 1
         points, owner = np.insert(points, where, found[sure], axis=0), np.insert(owner, where, owner[where - 1])
-    turned = _turned(points, owner, heights, cutter, max(10.0 * tolerance, 0.05))
+    backwards = _part_on_left(points, owner, heights, cutter, max(10.0 * tolerance, 0.05))
     bounds = np.searchsorted(owner, np.arange(len(lines) + 1)).tolist()
     for number, (a, b) in enumerate(pairwise(bounds)):
         line = points[a:b]
         line = line[np.concatenate(([True], np.any(np.diff(line, axis=0) != 0.0, axis=1)))]
         if len(line) > 2:
-            line = line[::-1] if turned[number] else line
+            line = line[::-1] if backwards[number] else line
             yield np.column_stack((line, np.full(len(line), heights[number])))
 
 
@@ -212,7 +212,7 @@ def _on_edges(points: FloatArray, level: FloatArray, cutter: DropCutter, chart: 
 
 
 def _halved(safe: FloatArray, beyond: FloatArray, level: FloatArray, cutter: DropCutter) -> FloatArray:
-    """The last safe place between a safe one and one in the part."""
+    """The last safe position between a safe one and one in the part."""
     safe, beyond = safe.copy(), beyond.copy()
     for _ in range(_HALVINGS):
         middle = 0.5 * (safe + beyond)
@@ -244,7 +244,7 @@ def _across(
     cutter: DropCutter,
     reach: FloatArray,
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """The boundary's place on the normal of a chord whose middle is off it, and whether there is one."""
+    """The boundary's position on the normal of a chord whose middle is off it, and whether there is one."""
     best, sure = middle.copy(), np.zeros(len(middle), dtype=bool)
     for sign in (1.0, -1.0):
         other = middle + sign * reach[:, None] * normal
@@ -257,10 +257,10 @@ def _across(
     return best, sure
 
 
-def _turned(
+def _part_on_left(
     points: FloatArray, owner: NDArray[np.int64], heights: FloatArray, cutter: DropCutter, side_mm: float
 ) -> NDArray[np.bool_]:
-    """Which lines have the part on their left: they are to be turned, for climb milling has it on the right."""
+    """Which lines have the part on their left: they are to be reversed, for climb milling has it on the right."""
     middle, normal, first = _middles(points, owner)
     whose = owner[first]
     on_left = cutter.drop(np.ascontiguousarray(middle + side_mm * normal)) > heights[whose]

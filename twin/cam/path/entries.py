@@ -17,9 +17,9 @@ from twin.motion.path import Arc
 Free: TypeAlias = Callable[[FloatArray], bool]
 #: Angle between the points of leads and helices, rad.
 _STEP = math.radians(6.0)
-#: A helix that is not free is tried with half the radius so many times.
+#: A helix that is not free is tried with half the radius, at most this many times.
 _HALVINGS = 3
-#: Ramps go back and forth over so much of a pass, in multiples of the helix radius.
+#: Ramps zigzag over this length of a pass, in multiples of the helix radius.
 _RAMP_REACH = 4.0
 
 
@@ -38,12 +38,12 @@ class EntryOptions:
 def entry_moves(
     points_mm: FloatArray, begin_z_mm: float, top_mm: float | None, options: EntryOptions, free: Free | None
 ) -> tuple[list[Move], FloatArray]:
-    """The way down to a pass.
+    """Entry into a pass.
 
     Args:
         points_mm: the pass.
         begin_z_mm: height where rapids end.
-        top_mm: height of the material there, None where there is none: then the way is straight down.
+        top_mm: height of the material there, None where there is none: then straight down.
 
     Returns:
         Moves from ``begin_z_mm`` to the pass, and the pass's points, which begin elsewhere on a closed pass where the
@@ -68,21 +68,25 @@ def _plunge(over: FloatArray, begin_z_mm: float, end_z_mm: float, options: Entry
 
 
 def _ramp(points: FloatArray, begin_z_mm: float, options: EntryOptions) -> tuple[list[Move], FloatArray]:
-    """Down along the pass: round and round a closed one, back and forth over the beginning of an open one."""
+    """Down along the pass: round and round a closed one, in zigzag over the beginning of an open one."""
     depth = begin_z_mm - float(points[0, 2])
-    ways = _lengths(points)
-    way = depth / math.tan(math.radians(options.ramp_deg))
+    lengths = _lengths(points)
+    length = depth / math.tan(math.radians(options.ramp_deg))
     if len(points) > 2 and np.all(points[0] == points[-1]):
-        at = np.unique(np.concatenate(([0.0, way], *(ways + k * ways[-1] for k in range(math.ceil(way / ways[-1]))))))
-        at = at[at <= way]
-        line = _at(points, ways, at % ways[-1])
-        line[:, 2] += depth * (1.0 - at / way)
-        return [_moving(MoveKind.RAMP, line, options)], _from(points, ways, way % ways[-1])
-    reach = min(float(ways[-1]), _RAMP_REACH * options.helix_mm)
-    legs = 2 * max(1, math.ceil(0.5 * way / reach))
-    reach = min(reach, way / legs)
-    there = np.unique(np.concatenate(([0.0, reach], ways[ways < reach])))
-    line = np.concatenate([_at(points, ways, there if k % 2 == 0 else there[::-1])[k > 0 :] for k in range(legs)])
+        at = np.unique(
+            np.concatenate(
+                ([0.0, length], *(lengths + k * lengths[-1] for k in range(math.ceil(length / lengths[-1]))))
+            )
+        )
+        at = at[at <= length]
+        line = _at(points, lengths, at % lengths[-1])
+        line[:, 2] += depth * (1.0 - at / length)
+        return [_moving(MoveKind.RAMP, line, options)], _from(points, lengths, length % lengths[-1])
+    reach = min(float(lengths[-1]), _RAMP_REACH * options.helix_mm)
+    legs = 2 * max(1, math.ceil(0.5 * length / reach))
+    reach = min(reach, length / legs)
+    there = np.unique(np.concatenate(([0.0, reach], lengths[lengths < reach])))
+    line = np.concatenate([_at(points, lengths, there if k % 2 == 0 else there[::-1])[k > 0 :] for k in range(legs)])
     gone = np.concatenate([(there if k % 2 == 0 else reach - there[::-1])[k > 0 :] + k * reach for k in range(legs)])
     line[:, 2] += depth * (1.0 - gone / gone[-1])
     line[-1] = points[0]
@@ -162,19 +166,19 @@ def _lead(points: FloatArray, options: EntryOptions, free: Free | None) -> Float
 
 
 def _lengths(points: FloatArray) -> FloatArray:
-    """Length of the way to each point, shape (n,)."""
+    """Length along a polyline to each point, shape (n,)."""
     return np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
 
 
-def _at(points: FloatArray, ways: FloatArray, at: FloatArray) -> FloatArray:
+def _at(points: FloatArray, lengths: FloatArray, at: FloatArray) -> FloatArray:
     """Points at lengths along a polyline, shape (n, 3)."""
-    return np.column_stack([np.interp(at, ways, points[:, a]) for a in range(3)])
+    return np.column_stack([np.interp(at, lengths, points[:, a]) for a in range(3)])
 
 
-def _from(points: FloatArray, ways: FloatArray, at: float) -> FloatArray:
+def _from(points: FloatArray, lengths: FloatArray, at: float) -> FloatArray:
     """A closed polyline that begins, and ends, elsewhere on it."""
-    k = int(np.searchsorted(ways, at, side="right"))
-    begin = _at(points, ways, np.array([at]))
+    k = int(np.searchsorted(lengths, at, side="right"))
+    begin = _at(points, lengths, np.array([at]))
     line = np.concatenate((begin, points[k:], points[1:k], begin))
     keep = np.concatenate(([True], np.any(np.diff(line, axis=0) != 0.0, axis=1)))
     return line[keep]

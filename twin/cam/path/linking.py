@@ -1,10 +1,10 @@
-"""Passes to one chain of moves: approach, entry, lead-in, cut, lead-out, and the way to the next pass.
+"""Passes to one chain of moves: approach, entry, lead-in, cut, lead-out, and the link to the next pass.
 
-Ways between passes, the first that is allowed and possible is taken:
+Links between passes; the first that is allowed and possible is taken:
 
-1. along the surface (or inside an area that is cleared), at the link feed, where the planner is no longer than
-   ``stay_down_mm`` and `LinkPlanner` knows one;
-2. at a clearance above what is left (``low_links``);
+1. along the surface (or inside an area that is cleared), at the link feed, where the link is no longer than
+   ``stay_down_mm`` and `LinkPlanner` has one;
+2. at a clearance above the rest material (``low_links``);
 3. up to the safe height, across and down, at the rapid rate.
 
 Straight up from any point of a pass is always free for a three-axis tool, so entries begin above the pass's start.
@@ -33,8 +33,8 @@ class Pass:
         points_mm: tool tip, shape (n >= 2, 3); a closed pass ends where it begins.
         top_mm: height of the material over the pass's start; None where there is none to enter through.
         layer: passes of different layers are never linked along the surface.
-        approach_mm: a tip in nothing but air from which the way straight to the start is free, shape (3,); None
-            without one. It takes the place of the entry.
+        approach_mm: a tip in air from which the straight line to the start is free, shape (3,); None
+            without one. It replaces the entry.
     """
 
     points_mm: FloatArray
@@ -56,16 +56,16 @@ class Pass:
 
 
 class LinkPlanner(Protocol):
-    """What is known of the room around the passes; tips are places of the tool's tip."""
+    """What is known of the space around the passes; tips are positions of the tool's tip."""
 
     def between(self, start_mm: FloatArray, end_mm: FloatArray) -> FloatArray | None:
-        """A way between two tips that cuts nothing of the part, shape (n, 3) with both ends; None without one."""
+        """A link between two tips that cuts nothing of the part, shape (n, 3) with both ends; None without one."""
 
     def free(self, points_mm: FloatArray) -> bool:
         """Whether the tool may stand at all of these tips, shape (n, 3), without cutting the part."""
 
     def clear_z_mm(self, start_mm: FloatArray, end_mm: FloatArray) -> float:
-        """Height above which a tip may go straight from over one place to over another through nothing but air."""
+        """Height above which a tip may move straight from one position to another through air only."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,13 +74,13 @@ class LinkOptions:
 
     Attributes:
         safe_z_mm: height of rapids, above stock and clamps.
-        clearance_mm: how far above material a rapid down ends, and how far above it low links go.
+        clearance_mm: how far above material rapids end, and low links run.
         feed_mm_min: of cuts, leads, ramps and links along the surface, unless they have their own.
         plunge_mm_min: straight down, ramps and helices.
         link_mm_min: links along the surface; None for ``feed_mm_min``.
         lead_mm_min: leads; None for ``feed_mm_min``.
-        stay_down_mm: longest way along the surface, 0 for none.
-        low_links: whether rapids across stay at clearance above what is left, where that is known.
+        stay_down_mm: longest link along the surface, 0 for none.
+        low_links: whether rapids across stay at clearance above the rest material, where that is known.
         entry: into material: straight down, along the pass, or a helix.
         ramp_deg: steepest angle of ramps and helices.
         helix_mm: radius of helices.
@@ -158,16 +158,16 @@ def _one_pass(
                 yield Move(kind=MoveKind.LINK, points_mm=points, feed_mm_min=feed)
             yield Move(kind=MoveKind.CUT, points_mm=one.points_mm, feed_mm_min=options.feed_mm_min)
             return
-    way_in, points = _way_in(one, options, planner)
-    yield from _over(moves, way_in[0].start_mm if way_in else points[0], options, planner)
-    yield from way_in
+    entry, points = _entry(one, options, planner)
+    yield from _over(moves, entry[0].start_mm if entry else points[0], options, planner)
+    yield from entry
     yield Move(kind=MoveKind.CUT, points_mm=points, feed_mm_min=options.feed_mm_min)
     out = lead_out(points, options.entries, planner.free if planner else None)
     if out is not None:
         yield out
 
 
-def _way_in(one: Pass, options: LinkOptions, planner: LinkPlanner | None) -> tuple[list[Move], FloatArray]:
+def _entry(one: Pass, options: LinkOptions, planner: LinkPlanner | None) -> tuple[list[Move], FloatArray]:
     """From where rapids end to a pass: from the side through air, by a lead, or down through the material.
 
     Returns:
@@ -192,7 +192,7 @@ def _way_in(one: Pass, options: LinkOptions, planner: LinkPlanner | None) -> tup
 def _down(
     moves: Sequence[Move], before: Pass, one: Pass, options: LinkOptions, planner: LinkPlanner | None
 ) -> FloatArray | None:
-    """The way along the surface to the next pass, of one point where it begins at the last one's end."""
+    """The link along the surface to the next pass, of one point where it begins at the last one's end."""
     if planner is None or options.stay_down_mm <= 0.0 or options.lead_mm > 0.0:
         return None
     end, start = before.points_mm[-1], one.points_mm[0]

@@ -22,7 +22,7 @@ from twin.motion.path import Arc
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Dynamics:
-    """What the machine's axes can do.
+    """Limits of the machine's axes.
 
     Attributes:
         rapid_mm_min: speed of rapids along the path.
@@ -114,7 +114,7 @@ def block_times_s(blocks: Blocks, dynamics: Dynamics) -> FloatArray:
 
 
 def path_blocks(moves: tuple[Move, ...]) -> Blocks:
-    """The blocks of moves; pieces without length are left out."""
+    """The blocks of moves; pieces without length are omitted."""
     parts = list(_parts(moves))
     length = np.concatenate([p[0] for p in parts])
     keep = length > 0.0

@@ -1,4 +1,4 @@
-"""The room over a part's surface, by dropping the tool on its triangles: see `twin.cam.path.linking.LinkPlanner`."""
+"""Links over a part's surface, by dropping the tool on its triangles: see `twin.cam.path.linking.LinkPlanner`."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from twin.cam.surface.drop_cutter import DropCutter
 from twin.cam.surface.surface import Surface
 from twin.tools.shape import ToolShape
 
-#: Distance of the places that are asked along a way, in parts of the tool's radius.
+#: Distance of the points that are checked along a link, in parts of the tool's radius.
 _STEP = 0.0125
 #: A tip this much below the lowest free one counts as free, mm: slices and chords are not exact.
 _SLACK_MM = 0.01
 
 
 class SurfaceLinkPlanner:
-    """Ways over a surface.
+    """Links over a surface.
 
     Args:
-        surface: makes the part's surface, when a way is first asked for.
+        surface: makes the part's surface, when a link is first needed.
         tool: the tool.
         allowance_mm: to be left on the part.
-        remaining_mm: what is left on it by those before; None where it may be all of the stock.
+        remaining_mm: rest material of the operations before; None where it may be all of the stock.
         floor_mm: lowest tip.
         top_mm: the stock's top.
     """
@@ -49,7 +49,7 @@ class SurfaceLinkPlanner:
         self._cutters: dict[float, DropCutter] = {}
 
     def lowest_mm(self, xy_mm: FloatArray, left_mm: float) -> FloatArray:
-        """Lowest tips over plan points, shape (n, 2), that leave so much on the part, shape (n,)."""
+        """Lowest tips over plan points, shape (n, 2), that leave this much on the part, shape (n,)."""
         if self._surface is None:
             self._surface = self._make()
         if left_mm not in self._cutters:
@@ -61,7 +61,7 @@ class SurfaceLinkPlanner:
         return heights
 
     def between(self, start_mm: FloatArray, end_mm: FloatArray) -> FloatArray:
-        """Straight in the plan, over the surface; never lower than the highest of three neighbouring places."""
+        """Straight in the plan, over the surface; never lower than the highest of three neighbouring points."""
         xy = _along(start_mm[:2], end_mm[:2], self._step)
         z = self.lowest_mm(xy, self._allowance)
         z = np.max([z, np.append(z[1:], z[-1]), np.append(z[0], z[:-1])], axis=0)
@@ -74,7 +74,7 @@ class SurfaceLinkPlanner:
         return bool(np.all(points_mm[:, 2] >= self.lowest_mm(points_mm[:, :2], self._allowance) - _SLACK_MM))
 
     def clear_z_mm(self, start_mm: FloatArray, end_mm: FloatArray) -> float:
-        """Height of nothing but air: over what is left where that is known, else the stock's top."""
+        """Height above which there is only air: over the rest material where that is known, else the stock's top."""
         if self._remaining is None:
             return self._top
         xy = _along(start_mm[:2], end_mm[:2], 4.0 * self._step)

@@ -1,6 +1,6 @@
 """Tool paths to an NC program and a job file that replays it.
 
-Part coordinates become program coordinates as they are: the work offset is the part's origin.
+Part coordinates become program coordinates as is: the work offset is the part's origin.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _COMMENT = 100
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Operation:
-    """A tool path with all that a program needs beside it.
+    """A tool path with all that a program needs besides.
 
     Attributes:
         path: what the tool does.
@@ -101,7 +101,9 @@ def write_nc(path: Path | str, operations: Sequence[Operation], options: NcOptio
     """
     operations = [o for o in operations if o.path.moves]
     if not operations or all(o.path.empty for o in operations):
-        raise ToolPathError(f"{path}: no file is written, for the tool path is empty; expected one that cuts something")
+        raise ToolPathError(
+            f"{path}: no file is written, because the tool path is empty; expected one that cuts something"
+        )
     try:
         return write_program(path, nc_events(operations, options), _write_options(operations, options))
     except (WriteError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""Tool paths: what the tool's tip does, move by move, in part coordinates.
+"""Tool paths: motion of the tool's tip, move by move, in part coordinates.
 
 A `Move` is a run of straight pieces or one arc, of one kind and one feed. A `ToolPath` is a chain of moves, each of
 which begins where the last one ends. Points are the tool's TIP: a ball's centre is its radius higher.
@@ -26,7 +26,7 @@ GAP_MM = 1e-7
 
 
 class MoveKind(StrEnum):
-    """What a move is for; feeds and colours go by it."""
+    """Purpose of a move; it determines feed and colour."""
 
     RAPID = "rapid"
     LINK = "link"
@@ -95,7 +95,7 @@ class Move:
         return float(np.linalg.norm(np.diff(self.points_mm, axis=0), axis=1).sum())
 
     def chords_mm(self, chord_mm: float = 0.01) -> FloatArray:
-        """The move as a polyline whose chords stand off an arc by at most so much, shape (n, 3)."""
+        """The move as a polyline whose chords lie off an arc by at most this much, shape (n, 3)."""
         if self.arc is None:
             return self.points_mm
         motion = ToolMotion(
@@ -119,7 +119,7 @@ class ToolPath:
     Attributes:
         moves: each begins where the last one ends.
         tool: shape of the cutting part.
-        name: what it is, for people and comments.
+        name: human-readable, for comments.
         notes: further lines for the program's header, e.g. the parameters it was made with.
 
     Raises:
@@ -202,7 +202,7 @@ class ToolPath:
 
 
 def rapid_over(start_mm: ArrayLike, end_mm: ArrayLike, safe_z_mm: float) -> tuple[Move, ...]:
-    """Up, across and down at the rapid rate; pieces of no length are left out."""
+    """Up, across and down at the rapid rate; pieces of no length are omitted."""
     start, end = np.asarray(start_mm, dtype=np.float64), np.asarray(end_mm, dtype=np.float64)
     corners = [start, np.array([*start[:2], safe_z_mm]), np.array([*end[:2], safe_z_mm]), end]
     return rapids(np.array(corners))

@@ -55,7 +55,7 @@ class ClearGrid:
     """Where links may stay down.
 
     Attributes:
-        low_mm: place of grid point (0, 0), shape (2,).
+        low_mm: position of grid point (0, 0), shape (2,).
         pitch_mm: distance of the grid points.
         distance_mm: at each grid point the distance to the nearest one where the tool must not be, 0 there;
             shape (nx, ny).
@@ -67,7 +67,7 @@ class ClearGrid:
 
     @classmethod
     def of(cls, allowed: NDArray[np.bool_], low_mm: ArrayLike, pitch_mm: float) -> ClearGrid:
-        """From a map of the places where the tool may be, shape (nx, ny); outside the map it must not be."""
+        """From a map of the positions where the tool may be, shape (nx, ny); outside the map it must not be."""
         framed = np.pad(allowed, 1)
         distance = np.asarray(distance_transform_edt(framed))[1:-1, 1:-1] * pitch_mm
         return cls(low_mm=frozen(low_mm, "low_mm", (2,)), pitch_mm=pitch_mm, distance_mm=np.ascontiguousarray(distance))
@@ -94,7 +94,7 @@ class Tour:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
-    """How a tour is sought.
+    """How a tour is searched for.
 
     Attributes:
         method: greedy alone, with 2-opt and Or-opt after it, or with iterated local search after that.
@@ -211,7 +211,7 @@ def _opened(tour: NDArray[np.int64], back: NDArray[np.int8]) -> tuple[NDArray[np
     """The open path from the start away from the dummy."""
     n = len(tour)
     at = int(np.flatnonzero(tour == 0)[0])
-    if tour[(at + 1) % n] == n - 1:  # it runs the other way
+    if tour[(at + 1) % n] == n - 1:  # it runs in the other direction
         tour, back, at = tour[::-1], 1 - back[::-1], n - 1 - at
     order = np.roll(np.arange(n), -at)
     return np.ascontiguousarray(tour[order][:-1]), np.ascontiguousarray(back[order][:-1])

@@ -1,1 +1,1 @@
-"""What tools can reach, and what they leave: volume, thickness, location."""
+"""Reach of tools: the material that they leave uncut, by volume, thickness and position."""

@@ -1,4 +1,4 @@
-"""The largest ball that finishes a part."""
+"""The largest ball that leaves no uncut material on a part."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from twin.errors import ToolError
 
 #: The radius is found to this part of itself.
 _SHARE = 0.01
-#: Radii below this many pitches cannot be told from noise.
+#: Radii below this many pitches cannot be distinguished from noise.
 _LEAST_PITCHES = 5.0
 
 
@@ -23,15 +23,15 @@ def largest_ball_mm(
     threads: int | None = None,
     report: Callable[[float, Reach], None] | None = None,
 ) -> float | None:
-    """Radius of the largest ball that leaves nothing thicker than the slices can tell, by halving.
+    """Radius of the largest ball that leaves nothing that the slices can resolve, by bisection.
 
     Args:
         thin_mm: least thickness that counts, see `twin.cam.reach.reach.tool_reach`.
-        report: called with every radius that was tried and what the ball leaves.
+        report: called with every radius that was tried and the material left by the ball.
 
     Returns:
         mm, to 1 %, never above half the part's smallest side; None where even a ball of five slice pitches leaves
-        something, as one does in a sharp inner edge.
+        material, as in a sharp inner edge.
 
     Raises:
         ToolError: slices too far apart for any ball.

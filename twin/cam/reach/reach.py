@@ -1,8 +1,8 @@
-"""What a tool cannot reach: the part inflated, shrunk again, and compared (the tri-slice paper, section 3.2).
+"""Material that a tool cannot reach: the part inflated, shrunk again, and compared (the tri-slice paper, section 3.2).
 
 The inflated part is where the tool's reference point may not be; everything else is swept with the tool and taken away.
-What is left and is no part of the part, the tool cannot remove. With a ball about its centre the tool may come from any
-side; with a tool about its tip it comes from above, and what lies below an overhang is out of reach.
+What remains outside the part, the tool cannot remove. With a ball about its centre the tool may come from any
+side; with a tool about its tip it comes from above, and material below an overhang is out of reach.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from twin.geometry.polygons.shapes import Shapes, boundaries, minus, to_shapes
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Reach:
-    """What one tool leaves on a part.
+    """Material left by one tool on a part.
 
     Attributes:
         element: the tool.
         axis: normal of the slices it was found on.
         pitch_mm: their distance.
-        thin_mm: what is nowhere thicker than this is noise of the slices and left out.
-        uncut_regions: connected regions that stay, the largest first.
+        thin_mm: regions nowhere thicker than this are noise of the slices, and omitted.
+        uncut_regions: connected regions of uncut material, the largest first.
     """
 
     element: StructuringElement
@@ -41,12 +41,12 @@ class Reach:
 
     @property
     def volume_mm3(self) -> float:
-        """Material that stays."""
+        """Volume of the uncut material."""
         return sum((r.volume_mm3 for r in self.uncut_regions), 0.0)
 
     @property
     def thickness_mm(self) -> float:
-        """Where it is thickest, distance from the part; 0 where nothing stays."""
+        """Its thickness, the largest distance from the part; 0 without any."""
         return max((r.thickness_mm for r in self.uncut_regions), default=0.0)
 
 
@@ -58,13 +58,13 @@ def tool_reach(
     thin_mm: float | None = None,
     threads: int | None = None,
 ) -> Reach:
-    """What a tool leaves on a part.
+    """Material left by a tool on a part.
 
     Args:
         element: `StructuringElement.ball` for a ball that may come from any side, `StructuringElement.tool` for a tool
             from above.
         axis: normal of the slices to work on; 2 for tools from above.
-        thin_mm: least thickness that counts; `thin_bound_mm` where not told.
+        thin_mm: least thickness that counts; `thin_bound_mm` if not given.
         threads: threads to work with, all cores if not given; results do not depend on it.
 
     Raises:
@@ -89,7 +89,7 @@ def thin_bound_mm(element: StructuringElement, pitch_mm: float) -> float:
 
     Where a surface lies nearly along the slices these know it to about half a pitch; the tool's sweep over it between
     two planes misses as much again, less what its radius bridges. `tool_positions` adds planes where that would
-    be the tool's deepest places.
+    be the tool's deepest positions.
     """
     return min(pitch_mm, 0.5 * pitch_mm + pitch_mm**2 / element.radius_mm)
 
@@ -97,13 +97,13 @@ def thin_bound_mm(element: StructuringElement, pitch_mm: float) -> float:
 def _closed(
     part: SlicedPart, sections: Sections, planes: FloatArray, element: StructuringElement, threads: int | None
 ) -> Shapes:
-    """Sections of what stays: everything that no position of the tool reaches, within the part's box."""
+    """Sections of the part and its uncut material: all that no position of the tool reaches, within the part's box."""
     axis, pitch = sections.axis, float(part.slices.pitch_mm[sections.axis])
     outer, box = frame_boxes(part.slices, axis, element)
     radius, chord = element.radius_mm, CHORD_PITCHES * pitch
     shapes, radii = to_shapes(sections.regions), towards(element, axis)
     inflated = Convolution(shapes, sections.positions_mm, radii, radius, chord, threads=threads)
-    places, walls, free = tool_positions(inflated, outer, even_positions(part, axis, planes, element), pitch)
+    planes_of, walls, free = tool_positions(inflated, outer, even_positions(part, axis, planes, element), pitch)
     radii = away(element, axis)
-    swept = Convolution(free, places, radii, radius, chord, threads=threads, edges=boundaries(walls))
+    swept = Convolution(free, planes_of, radii, radius, chord, threads=threads, edges=boundaries(walls))
     return minus(box, swept.on(planes))

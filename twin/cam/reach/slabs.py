@@ -1,4 +1,7 @@
-"""What each slice of a part stands for: half a pitch on either side, or up to a face that lies between two slices."""
+"""Slabs: the layer of the part that each slice represents.
+
+A slice represents half a pitch on either side, or less where a face of the part lies between two slices.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,9 @@ from twin.workpiece.from_mesh import Solid
 
 
 def slabs_mm(mesh: Solid, axis: int, planes_mm: FloatArray, pitch_mm: float) -> FloatArray:
-    """Ends of the slab that each plane stands for.
+    """Ends of the slab that each plane represents.
 
-    A region that ends at a face would else be told up to half a pitch too high or too low there. Of several faces
+    A region that ends at a face would otherwise appear up to half a pitch too high or too low there. Of several faces
     between two planes the largest counts.
 
     Args:
@@ -26,7 +29,7 @@ def slabs_mm(mesh: Solid, axis: int, planes_mm: FloatArray, pitch_mm: float) -> 
     areas = np.linalg.norm(vectors, axis=0)
     heights = mesh.vertices_mm[mesh.triangles[which, 0], axis]
     levels, of = np.unique(heights, return_inverse=True)
-    # the largest last, so that it is what stays
+    # the largest last, so that it overwrites the others
     levels = levels[np.argsort(np.bincount(of, weights=areas, minlength=len(levels)), kind="stable")]
     between = np.searchsorted(planes_mm, levels)
     inner = (between > 0) & (between < len(planes_mm))

@@ -1,4 +1,4 @@
-"""Planes on which a tool is placed to sweep all that it reaches: evenly spaced, and more of them where that pays.
+"""Planes on which a tool is placed to sweep all that it reaches: evenly spaced, and more where its path bends.
 
 The space where the tool may be ends in edges: where a ball touches two faces at once, its centre rolls along such an
 edge. On planes across it the edge is a corner, which the sweep passes on from plane to plane. Where an edge lies nearly
@@ -26,7 +26,7 @@ from twin.geometry.polygons.shapes import Shape, Shapes, minus
 _ON_MM = 1e-5
 #: Corners that wander farther than this many pitches between two planes need a plane between them.
 _WANDER_PITCHES = 1.0
-#: How often a pitch is halved at most.
+#: Most halvings of a pitch.
 _HALVINGS = 5
 #: Steps of outlines that are smaller than this part of a pitch are noise.
 _STEP_PITCHES = 0.02
@@ -52,11 +52,11 @@ def tool_positions(
 
     Args:
         inflated: the part's sections, to be inflated.
-        outer: all there may be around the part on a plane.
+        outer: rectangle around the part and its surroundings on a plane.
         even_mm: planes to begin with.
 
     Returns:
-        planes, shape (n,), increasing, at most twice as many as there were; and what is on each.
+        planes, shape (n,), increasing, at most twice as many as before; inflated part and free area on each.
     """
     planes, walls = even_mm, inflated.on(even_mm)
     free = minus(outer, walls)

@@ -1,4 +1,4 @@
-"""UncutRegion material as triangles: every piece of a slice as a prism over what it stands for."""
+"""Uncut material as triangles: every piece of a slice as a prism over the slab that it represents."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from twin.workpiece.to_mesh import SurfaceMesh
 
 
 def uncut_mesh(regions: Iterable[UncutRegion]) -> SurfaceMesh:
-    """Regions as closed prisms that touch each other along the slices' borders; for the eye, and for other programs."""
+    """Regions as closed prisms that touch each other along the slices' borders; for viewers and other programs."""
     corners = [
         _prism(piece, float(low), float(high), region.axis)
         for region in regions

@@ -1,4 +1,4 @@
-"""Material left on a part, as connected regions over slices: how much, how thick, where."""
+"""Uncut material on a part, as connected regions over slices: volume, thickness, position."""
 
 from __future__ import annotations
 
@@ -24,27 +24,27 @@ _WIDTH_PITCHES = 0.01
 _WIDE = 0.005
 #: Pieces on neighbouring planes that are this many pitches apart belong together: thin regions may lie aslant.
 _NEAR_PITCHES = 3.0
-#: Pieces that are nowhere thicker than this part of what counts are left out.
+#: Pieces that are nowhere thicker than this share of the least thickness are omitted.
 _TIES = 0.125
-#: Pieces beside a region that get thinner from plane to plane belong to it down to this part of what counts.
+#: Pieces next to a region that get thinner from plane to plane belong to it down to this share of the least thickness.
 _FADES = 1.0 / 32.0
-#: Places on the outline of a piece where its thickness is measured, at most.
+#: Points on the outline of a piece where its thickness is measured, at most.
 _MEASURED = 128
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class UncutRegion:
-    """One connected region of material that stays.
+    """One connected region of uncut material.
 
     Attributes:
-        volume_mm3: of its slices, each with its area as far as it stands for the region.
+        volume_mm3: of its slices, each with its area times the height that it represents.
         thickness_mm: largest distance from the part.
         deepest_mm: where that is, shape (3,).
         low_mm, high_mm: corners of its box, shape (3,).
         centroid_mm: shape (3,).
         axis: normal of its slices.
         planes_mm: position of each of its pieces.
-        slabs_mm: shape (n, 2), from where to where each piece stands for the region.
+        slabs_mm: shape (n, 2), the range of positions that each piece represents.
         pieces: polygons, one or more a plane.
     """
 
@@ -69,15 +69,15 @@ def uncut_regions(
     thin_mm: float,
     threads: int | None = None,
 ) -> tuple[UncutRegion, ...]:
-    """Connect what is left on planes to regions.
+    """Connect uncut material on planes to regions.
 
     Args:
-        left: what is left on each plane.
+        left: uncut material on each plane.
         planes_mm: their positions along ``axis``, evenly spaced.
-        slabs_mm: shape (n, 2), from where to where each plane stands for the part, without gaps.
+        slabs_mm: shape (n, 2), the range of positions that each plane represents, without gaps.
         axis: normal of the planes.
         surface: the part's.
-        thin_mm: regions nowhere thicker than this are left out.
+        thin_mm: regions nowhere thicker than this are omitted.
         threads: threads to measure with, all cores if not given.
 
     Returns:
@@ -100,8 +100,8 @@ def uncut_regions(
     labels = _faded(_connected(pairs, kept, len(thick)), pairs, np.where(thick > _FADES * thin_mm, thick, 0.0))
     found = []
     for label in range(labels.max() + 1):
-        places = np.flatnonzero(labels[of] == label)
-        deepest = places[np.argmax(distance[places])]
+        own = np.flatnonzero(labels[of] == label)
+        deepest = own[np.argmax(distance[own])]
         if distance[deepest] > thin_mm:
             part = pieces.some(np.flatnonzero(labels == label))
             thickest = float(distance[deepest]), points[deepest]
@@ -110,7 +110,7 @@ def uncut_regions(
 
 
 def _measured(pieces: Pieces) -> tuple[FloatArray, NDArray[np.int64]]:
-    """Places where thickness is measured, and the piece of each: on outlines, and in the middle of wide pieces."""
+    """Points where thickness is measured, and the piece of each: on outlines, and in the middle of wide pieces."""
     (points, of), (middles, fat) = pieces.outline_points(_MEASURED), pieces.middles(_WIDE)
     return np.concatenate((points, middles)), np.concatenate((of, fat))
 
@@ -143,7 +143,7 @@ def _in_space(points: FloatArray, planes: FloatArray | float, axis: int) -> Floa
 
 
 def _connected(pairs: Pairs, kept: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Number of the region of each kept piece, -1 for others: what overlaps, or nearly so, on neighbouring planes.
+    """Number of the region of each kept piece, -1 for others: pieces on neighbouring planes that overlap, or nearly so.
 
     Args:
         pairs: neighbours among all pieces.
@@ -160,9 +160,9 @@ def _connected(pairs: Pairs, kept: NDArray[np.int64], count: int) -> NDArray[np.
 
 
 def _faded(labels: NDArray[np.int64], pairs: Pairs, thick_mm: FloatArray) -> NDArray[np.int64]:
-    """Regions with their thin ends: from plane to plane, as long as there is a thinner piece beside the last one.
+    """Regions with their thin ends: from plane to plane, as long as there is a thinner piece next to the last one.
 
-    A piece beside two regions belongs to that whose piece is the thicker.
+    A piece next to two regions belongs to the one whose piece is thicker.
     """
     labels = labels.copy()
     one, other = np.concatenate((pairs[0], pairs[1])), np.concatenate((pairs[1], pairs[0]))

@@ -99,7 +99,7 @@ def cl_heights(
             along y. Any positions will do.
         samples: along every line.
         allowance_mm: material to leave everywhere.
-        smooth: False leaves out what lies between sections, as the paper does: heights are then never too large.
+        smooth: False omits material between sections, as the paper does: heights are then never too large.
         threads: threads to work with, all cores if not given; results do not depend on it.
 
     Returns:
@@ -149,7 +149,7 @@ def cl_lines(
     """The polylines that an element's reference point follows along lines over a part.
 
     Heights as of `cl_heights`, with samples in between wherever chords would stand off by more than ``chord_mm``, at
-    inner corners and at walls: there the line first leaves the wall and then goes down upright.
+    inner corners and at walls: there the line first leaves the wall and then descends vertically.
 
     Args:
         samples: the evenly spaced samples to begin with; the first and the last are the lines' ends.
@@ -157,7 +157,7 @@ def cl_lines(
         chord_mm: how far chords may stand off.
 
     Returns:
-        for every plane shape (n, 2): place along the line, increasing or equal, and height.
+        for every plane shape (n, 2): position along the line, increasing or equal, and height.
 
     Raises:
         ToolError: an allowance that the element cannot have.
@@ -180,7 +180,7 @@ def cl_regions(
     chord_mm: float,
     threads: int | None = None,
 ) -> tuple[Region, ...]:
-    """What lies below the lines of the tip, down to the part's lowest point: where the tip of a tool may not be.
+    """Areas below the CL lines, down to the part's lowest point: where the tip of a tool may not be.
 
     Args:
         sections: across x or y.

@@ -1,14 +1,14 @@
 """Offsets of sliced parts by convolution of neighbouring slices (the tri-slice paper, section 2.2, eq. 1).
 
 The section of an inflated part on a plane is the union of all neighbouring sections, each inflated by the radius that
-the structuring element has at its distance: sqrt(r^2 - d^2) for a ball. Shrinking is inflating what is not there.
+the structuring element has at its distance: sqrt(r^2 - d^2) for a ball. Shrinking inflates the space outside the part.
 
 Conventions. With `StructuringElement.ball` the result is where the ball's centre may not be; with
 `StructuringElement.tool` where the tool's tip may not be. As tools reach up without end, that is everything below the
 inflated top; on planes across x and y it is found by `cl_lines`. Elsewhere rounding arcs are inscribed, with
-chords no further than ``chord_mm`` inside, and what lies between slices is left out: an inflated part is never too
-large, and a shrunk one never too small, but for what GEOS leaves out, see `twin.geometry.polygons.guards`. How much it
-may lack is told by `bound_mm`.
+chords no further than ``chord_mm`` inside, and material between slices is omitted: an inflated part is never too
+large, and a shrunk one never too small, except for what GEOS omits, see `twin.geometry.polygons.guards`. `bound_mm`
+gives how much may be missing.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def inflate(
         element: a ball about its centre, or a tool about its tip.
         allowance_mm: material to leave everywhere.
         axes: directions wanted; the others have no planes in the result.
-        chord_mm: how far chords of rounding arcs may stand inside; `CHORD_PITCHES` of the pitch where not told.
+        chord_mm: how far chords of rounding arcs may lie inside; `CHORD_PITCHES` of the pitch if not given.
         threads: threads to work with, all cores if not given; results do not depend on it.
 
     Returns:
@@ -70,15 +70,15 @@ def inflate(
 
 
 def bound_mm(element: StructuringElement, pitch_mm: float, slope_rad: float = 0.5 * math.pi) -> float:
-    """How far an inflated part may stand inside of the exact one, for what lies between its slices.
+    """How far an inflated part may lie inside the exact one, for material between its slices.
 
-    On a flat, or outwards round, place whose surface makes an angle with the planes of the slices, the nearest slices
-    are at most half a pitch away, p / (2 sin a) along the surface: the element's curvature loses p^2 / (8 r sin^2 a)
-    there, and the part's own as much again where its radius is not smaller. Nowhere is more lost than half a pitch, but
-    for faces that lie across the slices of a part without `SlicedPart.faces`, which are known to one pitch.
+    Where a flat or convex surface makes an angle a with the planes of the slices, the nearest slices are at most half a
+    pitch away, p / (2 sin a) along the surface: the element's curvature loses p^2 / (8 r sin^2 a) there, and the part's
+    own as much again where its radius is not smaller. Nowhere is more lost than half a pitch, except at faces that lie
+    across the slices of a part without `SlicedPart.faces`, which are known to one pitch.
 
     Args:
-        slope_rad: angle between the surface and the planes of the slices; 90 degrees where not told.
+        slope_rad: angle between the surface and the planes of the slices; 90 degrees if not given.
     """
     radius = element.corner_mm if element.corner_mm > 0.0 else element.radius_mm
     sine = math.sin(slope_rad)
@@ -113,15 +113,15 @@ def shrink(
     chord_mm: float | None = None,
     threads: int | None = None,
 ) -> SliceSet:
-    """Shrink a part: what is around it is inflated, and the rest is left (the tri-slice paper's intersection).
+    """Shrink a part: the space around it is inflated, and the rest remains (the tri-slice paper's intersection).
 
     Shrinking an inflated part by the same element closes it: gaps that the element does not fit into stay filled.
 
     Args:
         part: as for `inflate`.
-        element: for a tool the result is where every place of the tool's body, upside up, is inside the inflated part.
+        element: for a tool the result is where every point of the tool's body, upside up, is inside the inflated part.
         axes: directions wanted; the others have no planes in the result.
-        chord_mm: how far chords of rounding arcs may stand inside.
+        chord_mm: how far chords of rounding arcs may lie inside.
         threads: threads to work with, all cores if not given; results do not depend on it.
 
     Returns:
@@ -161,7 +161,7 @@ def _with_nothing_beyond(sections: Sections, element: StructuringElement, pitch_
 
 
 def frame_boxes(slices: SliceSet, axis: int, element: StructuringElement) -> tuple[Shape, Shape]:
-    """Rectangle that holds all there may be around a part on a plane, and the part's own."""
+    """Rectangle around a part and its surroundings on a plane, and the part's own."""
     u, v = PLANE_AXES[axis]
     low, high, far = slices.low_mm, slices.high_mm, 3.0 * element.radius_mm
     return (
@@ -181,9 +181,9 @@ def away(element: StructuringElement, axis: int) -> Radii:
 
 
 def inflate_individually(slices: SliceSet, radius_mm: float, *, chord_mm: float | None = None) -> SliceSet:
-    """Inflate every slice alone, as if its neighbours were not there (the tri-slice paper, fig. 3): for comparison.
+    """Inflate every slice alone, without its neighbours (the tri-slice paper, fig. 3): for comparison.
 
-    The result depends on the direction of the slices, as it must not.
+    The result depends on the direction of the slices, which it should not.
     """
     chord = CHORD_PITCHES * float(slices.pitch_mm.min()) if chord_mm is None else chord_mm
     segments = arc_segments(radius_mm, chord)

@@ -60,7 +60,7 @@ def polylines(
         floor_mm: least height.
 
     Returns:
-        for every line shape (m, 2): place along it, increasing or equal, and height.
+        for every line shape (m, 2): position along it, increasing or equal, and height.
     """
     heights = np.maximum(heights, floor_mm)
     rows, cells = np.nonzero(_rough(heights, samples.step_mm, chord_mm))

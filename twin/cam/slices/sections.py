@@ -20,7 +20,7 @@ from twin.workpiece.store import PLANE_AXES
 
 #: A face lies across an axis when its normal has at least this component along it.
 _ACROSS = 1.0 - 1e-9
-#: Edges are sharp from this angle between the normals beside them.
+#: Edges are sharp from this angle between the normals on either side.
 _SHARP_RAD = math.radians(10.0)
 #: Sections of such faces are cut this far inside the material, and stand for the face itself.
 _INSIDE_MM = 2e-5
@@ -55,13 +55,13 @@ class Sections:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SlicedPart:
-    """A part as slices, with what slices alone would miss.
+    """A part as slices, with sections at the faces and edges that even slices would miss.
 
     Attributes:
         mesh: the solid that was cut.
         slices: evenly spaced sections in three directions.
-        faces: for every axis, sections just inside of the faces that lie across it, and beside sharp edges that do.
-            Even slices know these to half a pitch only; with the added ones they are known exactly.
+        faces: for every axis, sections just inside of the faces that lie across it, and on both sides of such sharp
+            edges. Even slices know these to half a pitch only; with the added ones they are known exactly.
     """
 
     mesh: Solid
@@ -81,8 +81,8 @@ def slice_part(part: Path | str | Solid, pitch_mm: float) -> SlicedPart:
         pitch_mm: largest distance of the planes, which lie at low + (k + 1/2) pitch.
 
     Raises:
-        MeshError: no solid.
-        StockError: a pitch that cannot be.
+        MeshError: the mesh is not a closed solid.
+        StockError: a pitch that is not possible.
     """
     mesh = part if isinstance(part, Solid) else load_mesh(part)
     slices = mesh_slices(mesh, pitch_mm)
@@ -152,7 +152,7 @@ def _lies_across(vectors: FloatArray, axis: int) -> NDArray[np.bool_]:
 
 
 def _nearly_level(mesh: Solid, axis: int) -> NDArray[np.int64]:
-    """Triangles that may lie across an axis; most are told by their heights, without their normals."""
+    """Triangles that may lie across an axis; most are excluded by their heights, without their normals."""
     heights = mesh.vertices_mm[:, axis]
     a, b, c = (heights[mesh.triangles[:, i]] for i in range(3))
     spread = np.maximum(np.maximum(a, b), c) - np.minimum(np.minimum(a, b), c)
@@ -163,7 +163,7 @@ def _nearly_level(mesh: Solid, axis: int) -> NDArray[np.int64]:
 def edge_levels(mesh: Solid, axis: int) -> FloatArray:
     """Positions of sharp edges that lie across an axis: ridges, rims of cones, borders of faces that lie across it.
 
-    Even slices miss the top of such an edge by up to half a pitch times the slope beside it.
+    Even slices miss the top of such an edge by up to half a pitch times the slope next to it.
     """
     ends = mesh.vertices_mm[mesh.edges.ends, axis]
     level = np.flatnonzero(ends[:, 0] == ends[:, 1])

@@ -45,7 +45,7 @@ def slopes(vectors: FloatArray, axis: int) -> FloatArray:
 def gaps_of(mesh: Solid, which: NDArray[np.int64], sections: Sections) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Gaps between sections that triangles reach into: the first, and one past the last.
 
-    Gap k lies before section k; the first is before all sections and the last behind them.
+    Gap k lies before section k; the first is before all sections and the last after them.
     """
     heights = mesh.vertices_mm[:, sections.axis][mesh.triangles[which]]
     first = np.searchsorted(sections.positions_mm, heights.min(axis=1), side="right")

@@ -1,7 +1,7 @@
-"""Structuring elements: what a part is inflated with, as its sections at a distance.
+"""Structuring elements: the bodies that a part is inflated with, by their sections at a distance.
 
 Two kinds. A centred ball is the element of the tri-slice paper: its reference point is its centre, and it is its own
-mirror image. A tool has its tip as reference point; the part is inflated with the tool turned upside down, so that the
+mirror image. A tool has its tip as reference point; the part is inflated with the tool upside down, so that the
 inflated part is exactly what the tip must stay out of. Tools are taken to reach up without end, with the radius of
 their shank: what lies below an overhang is out of reach.
 """

@@ -1,8 +1,8 @@
-"""Stock as vertical dexels: one height for each place of a plan grid, lowered exactly by moving tools.
+"""Stock as vertical dexels: one height for each point of a plan grid, lowered exactly by moving tools.
 
 A part milled along z without undercuts has one height over each plan point, and so has its stock at every stage: one
-number a dexel says all. A height is the true one at the dexel's own place, to rounding; between dexels nothing is
-known. Whatever stands above a tool is taken away with it, shank and holder are not looked at.
+number per dexel is enough. A height is exact at the dexel's own position, to rounding; between dexels nothing is
+known. All material above a tool is removed with it; shank and holder are not considered.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from twin.geometry.threads import PARTS, run_all
 from twin.motion.path import Move
 from twin.tools.shape import ToolShape
 
-#: Strokes that are not worth several threads.
+#: This many strokes are not worth several threads.
 _FEW = 64
 #: Most dexels a model may have.
 _MOST = 400_000_000
 
 
 class Dexels:
-    """Stock as heights over a grid; dexel (i, j) stands at low + ((i, j) + 1/2) pitch.
+    """Stock as heights over a grid; dexel (i, j) is at low + ((i, j) + 1/2) pitch.
 
     Args:
         low_mm, high_mm: corners of the plan, shape (2,).
@@ -39,7 +39,7 @@ class Dexels:
         floor_mm: its underside; heights never go below.
 
     Raises:
-        StockError: a plan without extent, a pitch that cannot be, or a top below the floor.
+        StockError: a plan without extent, a pitch that is not possible, or a top below the floor.
     """
 
     def __init__(
@@ -70,12 +70,12 @@ class Dexels:
 
     @property
     def x_mm(self) -> FloatArray:
-        """Places of dexels along x, shape (nx,)."""
+        """Positions of dexels along x, shape (nx,)."""
         return np.asarray(self.low_mm[0] + (np.arange(self.heights_mm.shape[0]) + 0.5) * self.pitch_mm[0])
 
     @property
     def y_mm(self) -> FloatArray:
-        """Places of dexels along y, shape (ny,)."""
+        """Positions of dexels along y, shape (ny,)."""
         return np.asarray(self.low_mm[1] + (np.arange(self.heights_mm.shape[1]) + 0.5) * self.pitch_mm[1])
 
     @property
@@ -87,7 +87,7 @@ class Dexels:
 
     @property
     def points_mm(self) -> FloatArray:
-        """Plan places of all dexels in the order of ``heights_mm.ravel()``, shape (nx ny, 2)."""
+        """Plan positions of all dexels in the order of ``heights_mm.ravel()``, shape (nx ny, 2)."""
         x, y = np.meshgrid(self.x_mm, self.y_mm, indexing="ij")
         return np.column_stack((x.ravel(), y.ravel()))
 
@@ -109,7 +109,7 @@ class Dexels:
         return other
 
     def volume_above_mm3(self, z_mm: ArrayLike) -> float:
-        """Volume between heights, one or shape (nx, ny), and the stock where it stands higher."""
+        """Volume between heights, one or shape (nx, ny), and the stock where it is higher."""
         return float(np.maximum(self.heights_mm - np.asarray(z_mm), 0.0).sum()) * self.cell_mm2
 
     def cut(self, tool: ToolShape, strokes: Strokes, threads: int | None = None) -> None:
@@ -139,8 +139,8 @@ class Dexels:
     ) -> None:
         """Lower the heights by moves of several tools; motions without a tool, or with tool 0, cut nothing.
 
-        Rapid motions cut as well: what they pass through is gone. Level arcs are exact; of other arcs the chords cut,
-        which stand off by at most ``chord_mm``.
+        Rapid motions cut as well: material in their path is removed. Level arcs are exact; other arcs are cut by
+        chords that lie off them by at most ``chord_mm``.
         """
         by_tool: dict[int, list[Move]] = {}
         for move in moves:

@@ -41,7 +41,7 @@ def cut_program(
         tools: shape of each tool by number.
         origin_mm: origin of the workpiece frame in machine coordinates, shape (3,).
         tool_length_mm: gauge length of each tool; tools that are missing count as 0 (`twin.motion.from_nc`).
-        chord_mm: how far chords may stand off arcs that are not level.
+        chord_mm: how far chords may lie off arcs that are not level.
 
     Raises:
         GcodeError: a block that is refused, or a motion with an axis besides X, Y and Z away from 0.
@@ -99,9 +99,9 @@ def _arc(motions: MotionArrays, i: int, lift: FloatArray) -> Move:
 
 
 def _refuse_further_axes(motions: MotionArrays) -> None:
-    turned: NDArray[np.bool_] = (motions.extra != 0.0).any(axis=1)
-    if turned.any():
-        i = int(np.argmax(turned))
+    further: NDArray[np.bool_] = (motions.extra != 0.0).any(axis=1)
+    if further.any():
+        i = int(np.argmax(further))
         place = Place(file=motions.files[int(motions.file[i])], line=int(motions.line[i]))
         problem = "an axis besides X, Y, Z is not at 0"
         raise GcodeError(place, "further-axis", problem, "a program for three axes")

@@ -1,9 +1,9 @@
-"""Rest material: where the next tool must cut and may, level by level, and at which points.
+"""Rest material: where the next tool must and may cut, level by level, and at which points.
 
-A tool dropped on the part stands at p(x, y) at the lowest; dropped on the stock as it is it stands at s(x, y). At a
-level z the tool at (x, y) does not gouge where p + allowance <= z, and cuts something where s > z. Both together are
-the places to go to: nowhere does the tool cut air, and nothing that it can reach at that level is left out. The tool's
-whole underside counts, so that material beside it on a wall is found as well as that below its tip.
+A tool dropped on the part has its tip at p(x, y) at the lowest; dropped on the stock, at s(x, y). At a
+level z the tool at (x, y) does not gouge where p + allowance <= z, and cuts something where s > z. Positions
+with both are those to machine: nowhere does the tool cut air, and nothing that it can reach at that level is missed.
+The tool's whole underside counts, so that material next to it on a wall is found as well as that below its tip.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from twin.errors import ToolError
 from twin.geometry.threads import in_parts
 from twin.tools.shape import ToolShape
 
-#: Material thinner than this above a tool counts as none, mm.
+#: Thinner material above a tool is ignored, mm.
 LEAST_MM = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LevelRest:
-    """What is left for a tool at one level.
+    """Rest material of a tool at one level.
 
     Attributes:
         z_mm: height of the tool tip.
-        regions: shape (nx, ny), number of the connected region of tool places that each dexel lies in, 0 for none.
-        points_mm: shape (m, 3), thinned tool places that cover the regions, region by region, rims first.
+        regions: shape (nx, ny), number of the connected region of tool positions that each dexel lies in, 0 for none.
+        points_mm: shape (m, 3), thinned tool positions that cover the regions, region by region, rims first.
         point_regions: shape (m,), the region of each.
     """
 
@@ -52,14 +52,14 @@ class LevelRest:
 
 
 class RestMaterial:
-    """Stock, part and the next tool, ready to be asked level by level.
+    """Stock, part and the next tool, for queries level by level.
 
     Args:
-        stock: what the tools before have left.
+        stock: after the tools before.
         part: the part's surface.
         tool: the next tool.
         allowance_mm: material to leave on the part, along its normals.
-        least_mm: material thinner than this, seen along z, is no reason to go there.
+        least_mm: material thinner than this, measured along z, is not cut.
         threads: how many work, None for all cores; results do not depend on it.
 
     Raises:
@@ -87,19 +87,19 @@ class RestMaterial:
         return np.maximum(self.stock_tip_mm - self.part_tip_mm - self.least_mm, 0.0)
 
     def level(self, z_mm: float, spacing_mm: float | None = None) -> LevelRest:
-        """Places of the tool at a level where it cuts and does not gouge, and points that cover them.
+        """Positions of the tool at a level where it cuts and does not gouge, and points that cover them.
 
         Args:
-            spacing_mm: least distance of points, and largest from any place to the next point; half the tool's
-                diameter where it is left out. `spacing_for_cusp` gives one for a height of what is left between.
+            spacing_mm: least distance of points, and largest from any position to the next point; half the
+                tool's diameter if not given. `spacing_for_cusp` gives one for a cusp height.
         """
         spacing = self.tool.nominal_radius_mm if spacing_mm is None else spacing_mm
         if not spacing > 0.0:
             raise ToolError(f"rest material: spacing_mm = {spacing:g}; expected a number above 0")
-        places = (self.part_tip_mm <= z_mm) & (self.stock_tip_mm > z_mm + self.least_mm)
-        labels, _ = ndimage.label(places, structure=np.ones((3, 3), dtype=np.int8))
-        rim = places & ~ndimage.binary_erosion(places, border_value=1)
-        rows, columns = np.nonzero(places)
+        positions = (self.part_tip_mm <= z_mm) & (self.stock_tip_mm > z_mm + self.least_mm)
+        labels, _ = ndimage.label(positions, structure=np.ones((3, 3), dtype=np.int8))
+        rim = positions & ~ndimage.binary_erosion(positions, border_value=1)
+        rows, columns = np.nonzero(positions)
         order = np.lexsort((~rim[rows, columns], labels[rows, columns]))
         rows, columns = rows[order], columns[order]
         plan = np.column_stack((self.stock.x_mm[rows], self.stock.y_mm[columns]))
@@ -109,7 +109,7 @@ class RestMaterial:
         return LevelRest(float(z_mm), labels.astype(np.int32), points, labels[rows, columns][chosen].astype(np.int32))
 
     def levels(self, z_mm: Sequence[float], spacing_mm: float | None = None) -> list[LevelRest]:
-        """The same at several levels, those without a place left out."""
+        """The same at several levels, those without a position omitted."""
         found = [self.level(z, spacing_mm) for z in z_mm]
         return [rest for rest in found if len(rest.points_mm)]
 
@@ -158,7 +158,7 @@ def grown(tool: ToolShape, by_mm: float) -> ToolShape:
 
 
 def stock_heights(stock: Dexels, tool: ToolShape, points_mm: FloatArray, threads: int | None = None) -> FloatArray:
-    """Tip heights at which a tool coming down touches the stock's first dexel, shape (m,); -inf beside the stock."""
+    """Tip heights at which a tool coming down touches the stock's first dexel, shape (m,); -inf next to the stock."""
     points = np.ascontiguousarray(points_mm, dtype=np.float64)
     out = np.empty(len(points))
     own, shape = stock.arrays, tool.meridian
@@ -167,9 +167,9 @@ def stock_heights(stock: Dexels, tool: ToolShape, points_mm: FloatArray, threads
 
 
 def spacing_for_cusp(tool: ToolShape, cusp_mm: float) -> float:
-    """Distance from the axis at which the tool's underside stands ``cusp_mm`` above its tip.
+    """Distance from the axis at which the tool's underside is ``cusp_mm`` above its tip.
 
-    Points no farther than this from every place leave cusps no higher on level ground.
+    Points no farther than this from every position leave cusps no higher on level ground.
     """
     if cusp_mm <= 0.0:
         raise ToolError(f"rest material: cusp_mm = {cusp_mm:g}; expected a number above 0")

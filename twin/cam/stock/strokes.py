@@ -14,7 +14,7 @@ from twin.arrays import FloatArray, frozen
 from twin.cam.path.toolpath import ToolPath
 from twin.motion.path import Arc, Move
 
-#: Arcs that are not level become chords that stand off them by at most this.
+#: Arcs that are not level become chords that lie off them by at most this.
 CHORD_MM = 1e-4
 #: Largest difference of an arc's two radii that still counts as one circle, mm.
 _EVEN_MM = 1e-9
@@ -22,7 +22,7 @@ _EVEN_MM = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Strokes:
-    """Motions of one tool's tip; what they leave does not depend on their order.
+    """Motions of one tool's tip; the result does not depend on their order.
 
     Attributes:
         starts_mm, ends_mm: shape (k, 3), straight motions.
@@ -35,7 +35,7 @@ class Strokes:
 
     @classmethod
     def through(cls, points_mm: ArrayLike) -> Strokes:
-        """Straight motions through points, shape (n, 3); one point alone is a stay there."""
+        """Straight motions through points, shape (n, 3); a single point is a motion without length."""
         points = frozen(points_mm, "points_mm", (None, 3))
         if len(points) == 1:
             return cls(points, points, np.empty((0, 8)))
@@ -43,7 +43,7 @@ class Strokes:
 
     @classmethod
     def of_moves(cls, moves: Iterable[Move], chord_mm: float = CHORD_MM) -> Strokes:
-        """The motions of a program's moves, whatever their tool; a dwell is a stay at its place."""
+        """The motions of a program's moves, whatever their tool; a dwell is a point."""
         return cls._of((m.start_mm, m.end_mm, m.arc, partial(m.corners_mm, math.inf, chord_mm)) for m in moves)
 
     @classmethod

@@ -21,12 +21,12 @@ from twin.tools.meridian import Meridian
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
 
-#: Parts of the elements that are listed side by side.
+#: Parts of the elements that are listed in parallel.
 _LIST_PARTS = 4
 #: Cells of the grid for each face, and the most there may be.
 _CELLS_A_FACE = 1.0
 _MOST_CELLS = 4_000_000
-#: Places in the cells' lists above which the cells are made larger.
+#: Entries of the cells' lists above which the cells are made larger.
 _MOST_ENTRIES = 60_000_000
 
 FACE, EDGE, VERTEX, FLOOR = 0, 1, 2, 3
@@ -42,7 +42,7 @@ class Contacts:
         z_mm: shape (m,), height of the tool tip.
         kind: shape (m,), FACE, EDGE, VERTEX or FLOOR.
         points_mm: shape (m, 3), the contact, NaN on the floor.
-        normals: shape (m, 3), unit normal of the tool's surface there, turned towards the tool; (0, 0, 1) on the floor.
+        normals: shape (m, 3), unit normal of the part there, pointing towards the tool; (0, 0, 1) on the floor.
     """
 
     z_mm: FloatArray
@@ -57,12 +57,12 @@ class DropCutter:
     Args:
         triangles: the surface, or loose triangles, shape (n, 3, 3), mm.
         tool: a shape, or text as ``ball D8`` or ``bull D10 rc1``; None for a needle, which gives the surface's height.
-        floor_mm: tip height where nothing is hit, and the least height given; the surface's lowest z where left out.
+        floor_mm: tip height where nothing is hit, and the least height given; the surface's lowest z if not given.
         threads: how many work, None for all cores; heights do not depend on it.
 
     Raises:
-        MeshError: triangles that are none.
-        ToolError: text that names no tool.
+        MeshError: triangles that `surface_of` refuses.
+        ToolError: text that does not name a tool.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class DropCutter:
         self.tool = shape
         self.floor_mm = float(self.surface.low_mm[2]) if floor_mm is None else float(floor_mm)
         if math.isnan(self.floor_mm):
-            raise ToolError("drop-cutter: floor_mm is no number; expected a height, or -inf for none")
+            raise ToolError("drop-cutter: floor_mm is not a number; expected a height, or -inf for none")
         self._threads = threads
         meridian = _NEEDLE if shape is None else shape.meridian
         elements = _elements(self.surface, meridian)
@@ -166,7 +166,7 @@ class DropCutter:
         counts: NDArray[np.int64],
         entries: NDArray[np.int32] | None = None,
     ) -> None:
-        """Count elements in cells, or enter them, in parts side by side."""
+        """Count elements in cells, or enter them, in parallel parts."""
         into = np.empty(0, dtype=np.int32) if entries is None else entries
         listings = [kernels.Listing(entries is not None, counts[part], into) for part in range(_LIST_PARTS)]
         run_all(

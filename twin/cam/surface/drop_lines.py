@@ -1,4 +1,4 @@
-"""Lines of a tool's tip over triangles: the drop-cutter's heights, exact at every point that is asked."""
+"""CL lines over triangles, from the drop-cutter's heights, which are exact at every point."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def drop_lines(
         planes_mm: shape (p,), positions of the lines across that.
         samples: the evenly spaced samples to begin with.
         floor_mm: least height.
-        chord_mm: how far chords may stand off.
+        chord_mm: how far chords may lie off.
     """
     planes = np.asarray(planes_mm, dtype=np.float64)
 

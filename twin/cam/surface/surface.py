@@ -21,7 +21,7 @@ class Surface:
     Attributes:
         vertices_mm: shape (n, 3).
         triangles: shape (m, 3).
-        normals: shape (m, 3), unit normals turned upwards; 0 for vertical triangles and those without area.
+        normals: shape (m, 3), upward unit normals; 0 for vertical triangles and those without area.
         ends: shape (e, 2), vertices of each edge.
         edge_cones_rad: shape (e, 2), normals across the edge as angles in [0, pi]; first > second where no tool rests.
         vertex_cones: shape (n, 4), box of the normals (x, y, 1): least x, largest x, least y, largest y; likewise.
@@ -49,17 +49,17 @@ def surface_of(corners_mm: ArrayLike, *, threads: int | None = None) -> Surface:
     """Weld loose triangles; corners meet where they are equal to the last bit.
 
     Args:
-        corners_mm: shape (m, 3, 3). Triangles may be turned either way, lie apart, or have no area.
+        corners_mm: shape (m, 3, 3). Triangles may have any orientation, lie apart, or have no area.
 
     Raises:
-        MeshError: no triangles, another shape, or a corner that is no finite number.
+        MeshError: no triangles, another shape, or a corner that is not finite.
     """
     corners = np.array(corners_mm, dtype=np.float64) + 0.0
     if corners.ndim != 3 or corners.shape[1:] != (3, 3) or len(corners) == 0:
         raise MeshError(f"surface: triangles of shape {corners.shape}; expected (m, 3, 3) with m above 0")
     bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
     if len(bad):
-        raise MeshError(f"surface: triangle {bad[0] + 1} of {len(corners)} has a corner that is no finite number")
+        raise MeshError(f"surface: triangle {bad[0] + 1} of {len(corners)} has a corner that is not finite")
     points = corners.reshape(-1, 3)
     ids, first = np.empty((2, len(points)), dtype=np.int64)
     count = weld(points.view(np.int64), ids, first)

@@ -19,7 +19,7 @@ from twin.jit import njit
 
 #: Cones thinner than this have no part of their own: neighbours touch there, up to R times this.
 _THIN_RAD = 1e-10
-#: Cones are widened by this against rounding; more elements are asked, never a wrong height found.
+#: Cones are widened by this against rounding; more elements are tested, never a wrong height found.
 _WIDEN_RAD = 1e-9
 #: So many numbers are sorted by insertion.
 _FEW = 64
@@ -261,7 +261,7 @@ def _clipped(polygon: _Polygon, ex: float, ey: float, ez: float, x: FloatArray, 
 
 @njit
 def face_slopes(vertices: FloatArray, triangles: NDArray[np.int64], normals: FloatArray) -> None:
-    """Unit normals turned upwards, shape (m, 3); nz = 0 for triangles on edge or without area."""
+    """Upward unit normals, shape (m, 3); nz = 0 for triangles on edge or without area."""
     for t in range(len(triangles)):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         ux, uy, uz = (
