@@ -1,4 +1,4 @@
-"""Slices, offsets and tip lines of the torus part beside other ways to the same: prints one JSON object.
+"""Slices, offsets and CL lines of the torus part next to other methods for the same: prints one JSON object.
 
     python -m benchmarks.offset [--pitches 0.25,0.125,0.05] [--quick]
 
@@ -39,13 +39,13 @@ from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
 TOOL = "ball 8"
 RADIUS_MM = 4.0
 HALF_MM = 30.0
-#: Distance of the places along a row, before it is made finer.
+#: Distance of the samples along a row, before it is refined.
 PLACES_MM = 0.05
 FLOOR_MM = -10.0
 ROWS_MM = np.linspace(-HALF_MM, HALF_MM, 241)
 #: Grids of height maps, and pitches of slices that make no larger error at the same places.
 EQUAL_ERROR = {0.25: 0.2, 0.125: 0.125, 0.05: 0.05}
-#: Points that opencamlib is asked for.
+#: Points that opencamlib computes.
 ASKED = 400
 
 
