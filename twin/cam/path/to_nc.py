@@ -101,9 +101,7 @@ def write_nc(path: Path | str, operations: Sequence[Operation], options: NcOptio
     """
     operations = [o for o in operations if o.path.moves]
     if not operations or all(o.path.empty for o in operations):
-        raise ToolPathError(
-            f"{path}: no file is written, for the tool path is empty; expected one that cuts something"
-        )
+        raise ToolPathError(f"{path}: no file is written, for the tool path is empty; expected one that cuts something")
     try:
         return write_program(path, nc_events(operations, options), _write_options(operations, options))
     except (WriteError, ValueError) as error:
