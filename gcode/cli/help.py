@@ -1,4 +1,4 @@
-"""Help texts without Python's type names: a flag has no value, and every value is named by its option."""
+"""Help texts without Python's type names: a flag has no value, and other values are named by their options."""
 
 from __future__ import annotations
 
@@ -27,4 +27,10 @@ def _without_type_names(parameters: list[Any]) -> list[Any]:
     for parameter in parameters:
         if getattr(parameter, "is_flag", False):
             parameter.metavar = ""
+        elif parameter.param_type_name == "argument":
+            parameter.display_type_rich = _no_type
     return parameters
+
+
+def _no_type(**_context: Any) -> None:
+    """The type of an argument, whose name is enough."""

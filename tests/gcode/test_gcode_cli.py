@@ -255,7 +255,7 @@ def test_no_arguments_print_the_help(cli: Cli) -> None:
 def test_the_help_names_no_python_types(cli: Cli, command: tuple[str, ...]) -> None:
     code, out, _ = cli(*command, "--help")
     assert code == 0
-    assert not re.search(r"<(bool|str|int|float)\b", out)
+    assert not re.search(r"<(bool|str|int|float|path|file|list)\b", out)
 
 
 def test_the_versions_are_printed(cli: Cli) -> None:
