@@ -1,4 +1,4 @@
-"""A function's compiled code in files, in the place of numba's own cache.
+"""A function's compiled code in files, instead of numba's own cache.
 
 This is the only module that uses numba's internals; they are the same from 0.60 to 0.68.
 """
@@ -26,7 +26,7 @@ _FROM_PARTS, _TO_PARTS = _RESULT._rebuild, _RESULT._reduce
 
 
 class KeptCode(NullCache):
-    """What numba asks for compiled code before it compiles, and gives it to afterwards.
+    """The store that numba reads compiled code from before it compiles, and writes it to afterwards.
 
     Args:
         function: the function in Python.

@@ -38,8 +38,8 @@ class Root:
 
     Attributes:
         path: the folder; it need not exist.
-        private: use it only if it belongs to this user and nobody else may write to it. What is read from it is
-            unpickled, that is, may run code.
+        private: use it only if it belongs to this user and no one else may write to it. Its files are unpickled, so
+            they can run code.
     """
 
     path: Path
@@ -177,7 +177,8 @@ def _unused(root: Path, since_s: float) -> Iterator[Path]:
 
 
 def _write_whole(folder: Path, name: str, data: bytes) -> None:
-    """Write under a name of its own and rename: nobody reads half a file.
+    """Write under a temporary name and rename, so that no one reads an incomplete file.
+
 
     Raises:
         OSError: the folder cannot be written, or the disk is full.
