@@ -11,9 +11,8 @@ JOB = Path(__file__).parent / "pocket" / "job.toml"
 
 
 def main() -> None:
-    job = twin.load_job(JOB).without_forces()
-    coarse = job.simulation.model_copy(update={"slice_pitch_mm": 0.4, "step_mm": 2.0})
-    run = twin.replay(job.model_copy(update={"simulation": coarse}))
+    job = twin.load_job(JOB).without_forces().with_simulation(slice_pitch_mm=0.4, step_mm=2.0)
+    run = twin.replay(job)
     for tool in run.summary.tools:
         print(f"T{tool.number} {tool.description}: {tool.removed_volume_mm3:.1f} mm3 removed")
     mesh = run.mesh()

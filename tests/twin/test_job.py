@@ -188,3 +188,15 @@ def test_the_job_in_the_documentation_is_sound(tmp_path: Path) -> None:
     text = (Path(__file__).parents[2] / "docs" / "job-file.md").read_text()
     job_folder(tmp_path).write_text(text.split("```toml\n")[1].split("```")[0])
     assert load_job(tmp_path / "job.toml").forces
+
+
+def test_a_job_with_another_simulation_is_checked(tmp_path: Path) -> None:
+    job = load_job(job_folder(tmp_path))
+    coarse = job.with_simulation(slice_pitch_mm=2.0, store="reference")
+    assert (coarse.simulation.slice_pitch_mm, coarse.simulation.store) == (2.0, "reference")
+    assert coarse.simulation.angle_step_deg == job.simulation.angle_step_deg
+    assert coarse.tools == job.tools and job.simulation.slice_pitch_mm == 0.5
+    with pytest.raises(JobError, match="slice_pitch_mm = 0"):
+        job.with_simulation(slice_pitch_mm=0)
+    with pytest.raises(JobError, match="slice_pich_mm: unknown key"):
+        job.with_simulation(slice_pich_mm=1.0)

@@ -24,10 +24,13 @@ _FILES: tuple[tuple[str, str], ...] = (
 
 
 def load_job(path: str | PathLike[str]) -> Job:
-    """Read a job file.
+    """Read and check a job file.
+
+    Args:
+        path: the file (TOML).
 
     Raises:
-        JobError: the file cannot be read, is not TOML, or has mistakes: all of them are in the message.
+        JobError: the file cannot be read, is not TOML, or has mistakes; the message has every one.
     """
     path = Path(path)
     data, text = read_toml(path, "a job file", JobError)
@@ -35,10 +38,11 @@ def load_job(path: str | PathLike[str]) -> Job:
 
 
 def job_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") -> Job:
-    """Make a job from tables as `tomllib` gives them; its text is written from them.
+    """Make a job from tables, as `tomllib` reads them from a job file.
 
     Args:
-        folder: what the files in it are relative to.
+        data: the tables by name.
+        folder: folder to which paths of files are relative.
 
     Raises:
         JobError: see `load_job`.

@@ -13,6 +13,7 @@ from pydantic import ConfigDict, Field, Strict
 
 from twin.errors import JobError
 from twin.measured.settings import CompareSettings, LogFile
+from twin.settings.check import checked
 from twin.settings.force_on import ForceOn
 from twin.settings.schema import toml_schema
 from twin.settings.table import FilePath, Key, Point, Table
@@ -226,11 +227,18 @@ class JobFile(Table):
 
 
 class Job(JobFile):
-    """A checked job; make it with `load_job` or `job_from_dict`. Its files' paths are joined to the job's folder.
+    """A checked job, made by `load_job` or `job_from_dict`; its tables are attributes by their names in the file.
+
+    Paths of files are joined to the job's folder. A job does not change: `with_simulation` and `without_forces` give
+    others.
 
     Attributes:
         path: the job file.
         text: its text, for the archive.
+
+    Example:
+        >>> coarse = twin.load_job("job.toml").with_simulation(slice_pitch_mm=0.4)
+        >>> twin.replay(coarse).summary.removed_volume_mm3
     """
 
     path: Path
@@ -257,14 +265,14 @@ class Job(JobFile):
         known = ", ".join(str(tool.number) for tool in self.tools)
         raise JobError(str(self.path), [f"tools: no tool has the number {number}; expected one of {known}"])
 
-    def with_store(self, store: str) -> Job:
-        """The same job with another implementation of the slices."""
-        return self.model_copy(update={"simulation": self.simulation.model_copy(update={"store": store})})
+    def with_simulation(self, **values: Any) -> Job:
+        """The same job with other values of its ``[simulation]`` table, e.g. ``slice_pitch_mm=0.2``.
 
-    def with_pitch(self, pitch_mm: float) -> Job:
-        """The same job with slices at another distance."""
-        update = {"slice_pitch_mm": pitch_mm}
-        return self.model_copy(update={"simulation": self.simulation.model_copy(update=update)})
+        Raises:
+            JobError: wrong names or values; the message has every mistake.
+        """
+        simulation = checked(Simulation, {**self.simulation.model_dump(), **values}, "simulation", JobError)
+        return self.model_copy(update={"simulation": simulation})
 
     def without_forces(self) -> Job:
         """The same job without cutting coefficients."""

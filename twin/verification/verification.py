@@ -66,7 +66,7 @@ def verify(
     settings = changed(VerifySettings, settings, values, "verify")
     job, design = job if isinstance(job, Job) else load_job(job), load_mesh(part)
     if settings.pitch_mm is not None:
-        job = job.with_pitch(settings.pitch_mm)
+        job = job.with_simulation(slice_pitch_mm=settings.pitch_mm)
     store, collisions = machined(job, begin=begin, at=at)
     found = deviation(
         store,

@@ -19,10 +19,11 @@ def check_mesh_path(path: Path | str, *, force: bool = False) -> Path:
     """Check that a mesh can be written there, before long work.
 
     Args:
-        force: whether a file that is there may be replaced.
+        path: file that ends in ``.stl`` or ``.3mf``.
+        force: whether an existing file may be replaced.
 
     Raises:
-        MeshError: a suffix without writer, a folder that is not there, or a file that is.
+        MeshError: an unknown suffix, a missing folder, or a file that exists.
     """
     target = Path(path)
     if target.suffix.lower() not in _WRITERS:
@@ -30,22 +31,25 @@ def check_mesh_path(path: Path | str, *, force: bool = False) -> Path:
     if not target.parent.is_dir():
         raise MeshError(f"{path}: there is no folder {target.parent}; expected one that exists")
     if target.exists() and not force:
-        raise MeshError(f"{path}: is there already; expected a new name, or leave to replace it (--force)")
+        raise MeshError(f"{path}: already exists; expected a new name, or --force to replace it")
     return target
 
 
 def write_mesh(path: Path | str, mesh: SurfaceMesh, *, force: bool = False) -> None:
-    """Write a mesh as binary STL or 3MF, by the path's suffix; under its final name only when all of it is on the disk.
+    """Write a mesh as binary STL or 3MF, mm; the file has its name only when it is complete.
 
     Args:
-        force: whether a file that is there may be replaced.
+        path: file that ends in ``.stl`` or ``.3mf``.
+        mesh: e.g. that of `Run.mesh`.
+        force: replace a file that exists.
 
     Raises:
-        MeshError: see `check_mesh_path`; an empty mesh; or the file cannot be written.
+        MeshError: an unknown suffix, a missing folder, a file that exists, an empty mesh, or a file that cannot be
+            written.
     """
     target = check_mesh_path(path, force=force)
     if len(mesh.triangles) == 0:
-        raise MeshError(f"{path}: nothing is left of the workpiece; expected a surface to write")
+        raise MeshError(f"{path}: no material is left of the workpiece; expected a surface to write")
     partial = target.with_name(f"{target.name}.partial")
     try:
         with partial.open("wb") as file:

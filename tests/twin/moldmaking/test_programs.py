@@ -57,7 +57,7 @@ def test_rs274_runs_them(programs: dict[str, Path], stage: str, tmp_path: Path) 
 
 
 def test_a_replay_of_all_stages_hits_nothing_and_gives_the_part(programs: dict[str, Path], plan: MoldPlan) -> None:
-    job = load_job(programs["job"]).with_pitch(0.8)
+    job = load_job(programs["job"]).with_simulation(slice_pitch_mm=0.8)
     store, collisions = machined(job)
     assert collisions == ()
     # chords 5 um, and what slices of 0.8 mm can tell

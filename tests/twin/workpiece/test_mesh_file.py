@@ -50,7 +50,7 @@ def test_a_3mf_holds_the_same_body_in_mm(tmp_path: Path) -> None:
 def test_a_file_that_is_there_is_kept_unless_forced(tmp_path: Path) -> None:
     path = tmp_path / "part.stl"
     path.write_text("precious")
-    message = f"{path}: is there already; expected a new name, or leave to replace it (--force)"
+    message = f"{path}: already exists; expected a new name, or --force to replace it"
     with pytest.raises(MeshError, match=f"^{re.escape(message)}$"):
         write_mesh(path, block())
     assert path.read_text() == "precious"
@@ -65,7 +65,7 @@ def test_wrong_places_and_kinds_are_refused(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match=r"part\.stl: there is no folder .*nowhere; expected one that exists$"):
         write_mesh(tmp_path / "nowhere" / "part.stl", block())
     nothing = SurfaceMesh(np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 3), dtype=np.int64))
-    with pytest.raises(MeshError, match=r"part\.stl: nothing is left of the workpiece; expected a surface to write$"):
+    with pytest.raises(MeshError, match=r"part\.stl: no material is left of the workpiece; expected a surface"):
         write_mesh(tmp_path / "part.stl", nothing)
     assert list(tmp_path.iterdir()) == []
 

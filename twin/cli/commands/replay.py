@@ -65,7 +65,7 @@ def replay(
 
     job = load_job(job_file)
     job = job.without_forces() if no_forces else job
-    job = job.with_store(engine.value) if engine is not None else job
+    job = job.with_simulation(store=engine.value) if engine is not None else job
     mcap, rrd = mcap or job.output.mcap, rrd or job.output.rrd
     with opened(mcap, rrd, view=view, force=force) as write, progress(quiet=quiet or as_json) as line:
         outcome = replay_job(job, line, write, strict=strict, threads=threads)
