@@ -1,4 +1,4 @@
-"""Speed of writing and reading a run's file, beside the mcap library's own writer: prints one JSON object.
+"""Speed of writing and reading a run's file, against the mcap library's own writer: prints one JSON object.
 
     python -m benchmarks.archive [--seconds 60] [--repeat 3]
 
@@ -24,7 +24,7 @@ from twin.sinks.mcap_sink import McapSink
 
 RATE_HZ = 21_600
 STEP_S = 0.03
-#: The library's writer is so slow that a part of the run tells its rate.
+#: The library's writer is so slow that a part of the run is enough.
 LIBRARY_SHARE = 10
 
 

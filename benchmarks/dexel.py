@@ -1,4 +1,4 @@
-"""Speed of the dexel model: an R4 ball on a finishing's short moves at 0.1 mm, beside a plain z-map: prints JSON.
+"""Speed of the dexel model: an R4 ball on a finishing's short moves at 0.1 mm, against a plain z-map: prints JSON.
 
     python -m benchmarks.dexel [--passes 60] [--step 0.3]
 
@@ -59,7 +59,7 @@ def finishing(passes: int, step: float) -> FloatArray:
 
 
 def stock() -> Dexels:
-    """What a semi-finishing left: the surface and 0.3 mm."""
+    """Stock after a semi-finishing: the surface and 0.3 mm."""
     flat = Dexels((0.0, 0.0), (100.0, 80.0), PITCH_MM, 9.0, -30.0)
     x, y = np.meshgrid(flat.x_mm, flat.y_mm, indexing="ij")
     return Dexels((0.0, 0.0), (100.0, 80.0), PITCH_MM, surface(x, y) + ALLOWANCE_MM, -30.0)

@@ -1,10 +1,10 @@
-"""Drop-cutter and level contours on the example's mold, beside opencamlib where it is installed: prints JSON.
+"""Drop-cutter and level contours on the example's mold, against opencamlib where it is installed: prints JSON.
 
     python -m benchmarks.drop_cutter [--triangles 99000 195000 460000] [--tool "ball 8"] [--points 2000] [--waterline]
 
 Both drop the same tool on the same points of the same mesh on one thread, in CPU time; opencamlib with bucket size 10,
-its best. Preparing (its tree, our lists) is told apart. A finishing's number of points is dropped by us alone, on all
-cores and in wall time, with the preparation shared out.
+its best. Preparing (its tree, our lists) is timed separately. The number of points of a finishing is dropped by
+ours alone, on all cores and in wall time, with the preparation shared out.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ LEVELS_MM = np.arange(-24.0, -0.5, 1.0) + 0.013
 
 
 def scan_points(count: int) -> FloatArray:
-    """About so many points on scan lines over the mold, four times as dense along them as across."""
+    """About this many points on scan lines over the mold, four times as dense along them as across."""
     step = np.sqrt(100.0 * 80.0 / count)
     x, y = np.arange(0.5 * step, 100.0, 0.5 * step), np.arange(0.5 * step, 80.0, 2.0 * step)
     return np.array([(a, b) for b in y for a in x])
@@ -114,7 +114,7 @@ def figures(count: int, options: argparse.Namespace, ocl: Any) -> dict[str, obje
     few, many = scan_points(options.points), scan_points(options.many)
     own, prepared, one = ours(triangles, tool, few, 1)
     _, ready, dropped = ours(triangles, tool, many, None)
-    told: dict[str, object] = {
+    found: dict[str, object] = {
         "triangles": len(triangles),
         "points": len(few),
         "us_a_point": round(one / len(few) * 1e6, 3),
@@ -125,10 +125,10 @@ def figures(count: int, options: argparse.Namespace, ocl: Any) -> dict[str, obje
         "contours_ms_a_level": round(level_ms(solid), 2),
     }
     if ocl is None:
-        return told | {"opencamlib": NOTE}
+        return found | {"opencamlib": NOTE}
     other, other_prepared, other_one = theirs(ocl, triangles, tool, few)
     off = np.abs(own - other)
-    told |= {
+    found |= {
         "opencamlib_us_a_point": round(other_one / len(few) * 1e6, 1),
         "opencamlib_prepare_s": round(other_prepared, 3),
         "times_faster": round(other_one / one, 1),
@@ -137,8 +137,8 @@ def figures(count: int, options: argparse.Namespace, ocl: Any) -> dict[str, obje
         "largest_difference_mm": float(f"{off.max():.2g}"),
     }
     if options.waterline:
-        told["opencamlib_waterline_s_a_level"] = round(waterline_s(ocl, triangles, tool), 1)
-    return told
+        found["opencamlib_waterline_s_a_level"] = round(waterline_s(ocl, triangles, tool), 1)
+    return found
 
 
 def main() -> None:

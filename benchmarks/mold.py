@@ -12,7 +12,7 @@ _SCRIPT = Path(__file__).parents[1] / "examples" / "mold" / "make_mold.py"
 
 
 def write_mold(path: Path, triangles: int) -> None:
-    """The mold with about so many triangles as an STL file."""
+    """The mold with about this many triangles as an STL file."""
     spec = importlib.util.spec_from_file_location("make_mold", _SCRIPT)
     assert spec is not None
     assert spec.loader is not None
@@ -22,7 +22,7 @@ def write_mold(path: Path, triangles: int) -> None:
 
 
 def mold(triangles: int) -> Solid:
-    """The mold with about so many triangles, through its STL."""
+    """The mold with about this many triangles, through its STL."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "mold.stl"
         write_mold(path, triangles)

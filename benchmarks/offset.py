@@ -6,7 +6,7 @@ The part of examples/torus (164,878 triangles, 60 x 60 mm), an R4 ball. Paths ar
 1: roughing in rows 2 mm apart, 5 layers of 2 mm, 0.10 mm left; finishing in rows 0.25 mm apart. Errors are those of the
 finishing path's points against the exact drop-cutter on the same triangles. The others: trimesh's sections,
 opencamlib's drop-cutter (on some of the points), and a height map dilated by the ball, with heights of slices at the
-same places and no larger error beside it.
+same positions and no larger error.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Cost(NamedTuple):
         assert isinstance(other, Cost)
         return Cost(self.wall_s + other.wall_s, self.cpu_s + other.cpu_s)
 
-    def told(self) -> dict[str, float]:
+    def rounded(self) -> dict[str, float]:
         """As it is printed."""
         return {"wall_s": round(self.wall_s, 3), "cpu_s": round(self.cpu_s, 3)}
 
@@ -128,7 +128,7 @@ def at_pitch(stl: Path, pitch: float) -> dict[str, Any]:
         [np.column_stack((u[:, 0], np.full(len(u), y))) for u, y in zip(lines, ROWS_MM, strict=True)]
     )
     heights = np.concatenate([line[:, 1] for line in lines])
-    return {name: cost.told() for name, cost in costs.items()} | errors(points, heights, surface_of(mesh))
+    return {name: cost.rounded() for name, cost in costs.items()} | errors(points, heights, surface_of(mesh))
 
 
 def surface_of(mesh: Solid) -> Surface:
@@ -150,7 +150,7 @@ def trimesh_sections(mesh: Solid, pitch: float) -> dict[str, float]:
                 if section is not None:
                     _ = section.polygons_closed
 
-    return timed(work, 1)[0].told()
+    return timed(work, 1)[0].rounded()
 
 
 def opencamlib_ms(mesh: Solid) -> float | None:
@@ -210,7 +210,7 @@ def height_map(surface: Surface, grid: float) -> dict[str, Any]:
     work()
     cost, _ = timed(work)
     places = np.column_stack((np.tile(nodes, len(rows)), np.repeat(nodes[rows], len(nodes))))
-    return {"prepared": prepared.told(), "dilated": cost.told()} | errors(places, out.ravel(), surface)
+    return {"prepared": prepared.rounded(), "dilated": cost.rounded()} | errors(places, out.ravel(), surface)
 
 
 def heights_of_slices(mesh: Solid, pitch: float, grid: float) -> dict[str, Any]:
@@ -222,8 +222,8 @@ def heights_of_slices(mesh: Solid, pitch: float, grid: float) -> dict[str, Any]:
     points = np.column_stack((np.tile(places.at_mm, len(ROWS_MM)), np.repeat(ROWS_MM, places.count)))
     return {
         "pitch_mm": pitch,
-        "prepared": prepared.told(),
-        "heights": cost.told(),
+        "prepared": prepared.rounded(),
+        "heights": cost.rounded(),
         **errors(points, np.maximum(heights.ravel(), FLOOR_MM), surface_of(mesh)),
     }
 
@@ -235,7 +235,7 @@ def drop_cutter(surface: Surface) -> dict[str, Any]:
     points = np.column_stack((x.ravel(), y.ravel()))
     build, cutter = timed(lambda: DropCutter(surface, TOOL, floor_mm=FLOOR_MM))
     drop, _ = timed(lambda: cutter.drop(points))
-    return {"build": build.told(), "drop": drop.told(), "points": len(points)}
+    return {"build": build.rounded(), "drop": drop.rounded(), "points": len(points)}
 
 
 def polygons(stl: Path) -> dict[str, Any]:
@@ -245,8 +245,8 @@ def polygons(stl: Path) -> dict[str, Any]:
     inflated, _ = timed(lambda: inflate(coarse, ball), 1)
     reached, reach = timed(lambda: tool_reach(fine, ball), 1)
     return {
-        "inflate_3_directions_0.5_mm": inflated.told(),
-        "machinable_0.1_mm": reached.told(),
+        "inflate_3_directions_0.5_mm": inflated.rounded(),
+        "machinable_0.1_mm": reached.rounded(),
         "machinable_volume_mm3": round(reach.volume_mm3, 3),
         "machinable_thickness_mm": round(reach.thickness_mm, 4),
     }

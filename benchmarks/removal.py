@@ -1,8 +1,9 @@
-"""Speed of removal alone, fast store beside reference store, and its growth over a zigzag: prints one JSON object.
+"""Speed of removal alone, fast store against reference store, and its growth over a zigzag: prints one JSON object.
 
     python -m benchmarks.removal [--passes 40] [--reference-passes 2]
 
-Ball R4, 2 mm deep, slices at 0.1 mm, one sweep a millimetre. The reference store is so slow that a few passes tell.
+Ball R4, 2 mm deep, slices at 0.1 mm, one sweep a millimetre. The reference store is so slow that a few passes
+are enough.
 """
 
 from __future__ import annotations

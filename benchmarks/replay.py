@@ -1,8 +1,8 @@
-"""Speed of a whole replay beside machine time: prints one JSON object.
+"""Speed of a whole replay against machine time: prints one JSON object.
 
     python -m benchmarks.replay [--job examples/ball_slot/job.toml] [--repeat 3]
 
-Kernels are compiled by a first run that does not count. Records are thrown away; `benchmarks.archive` tells what
+Kernels are compiled by a first run that does not count. Records are discarded; `benchmarks.archive` measures what
 keeping them costs.
 """
 

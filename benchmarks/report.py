@@ -1,4 +1,4 @@
-"""What every benchmark tells beside its own figures: machine, memory, and the commit that was measured."""
+"""Facts that every benchmark prints next to its own figures: machine, memory, and the measured commit."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pathlib import Path
 def commit() -> str:
     """Short name of the commit, with a + where files differ from it; unknown outside a repository."""
     here = Path(__file__).parent
-    told = [
+    answers = [
         subprocess.run(["git", *words], cwd=here, capture_output=True, text=True, check=False).stdout.strip()
         for words in (("rev-parse", "--short", "HEAD"), ("status", "--porcelain", "--untracked-files=no"))
     ]
-    return (told[0] or "unknown") + ("+" if told[1] else "")
+    return (answers[0] or "unknown") + ("+" if answers[1] else "")
 
 
 def report(benchmark: str, **figures: object) -> None:

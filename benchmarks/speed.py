@@ -178,7 +178,7 @@ def across() -> dict[str, Any]:
 
 
 def memory() -> dict[str, Any]:
-    """What the slices hold after facing squares of growing side, and after one slot in blocks of two sizes."""
+    """Memory of the slices after facing squares of growing side, and after one slot in blocks of two sizes."""
     tolerance = Tolerance.for_pitch(PITCH_MM)
     body = Body.of(tool_shape("ball", 8.0, 20.0), chord_mm=tolerance.chord_mm)
     squares = {}

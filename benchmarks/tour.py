@@ -1,4 +1,4 @@
-"""Tours beside OR-tools' routing: length after the same time, 200 to 10,000 points.
+"""Tours against OR-tools' routing: length after the same time, 200 to 10,000 points.
 
     python -m benchmarks.tour --points 200 1000 --seconds 5
 

@@ -16,18 +16,10 @@ NOT_READ = ("CONTRIBUTING.md", "CHANGELOG.md")
 #: Parts that still use words of the list; a part is removed here once it is clean.
 NOT_CLEAN: frozenset[str] = frozenset(
     {
-        "README.md",
-        "benchmarks/README.md",
-        "benchmarks",
-        "docs/architecture.md",
-        "docs/command-line.md",
         "docs/dexel.md",
         "docs/drop-cutter.md",
-        "docs/nomenclature.md",
         "docs/offsets.md",
         "docs/paths.md",
-        "docs/performance.md",
-        "docs/references.md",
         "twin/cam",
     }
 )

@@ -69,7 +69,7 @@ def log_text(t_s: np.ndarray, on_tool: np.ndarray) -> str:
     force = np.column_stack((-on_tool[:, 1], on_tool[:, 0], -on_tool[:, 2]))
     force += OFFSET_N + np.random.default_rng(20261).normal(0.0, NOISE_N, force.shape)
     rows = [f"{t:.5f},{x:.1f},{y:.1f},{z:.1f}" for t, (x, y, z) in zip(t_s, force, strict=True)]
-    source = "# SYNTHETIC DATA: computed by tools/make_reference_recording.py, measured by nobody."
+    source = "# SYNTHETIC DATA: computed by tools/make_reference_recording.py, not measured."
     return "\n".join([source, "Time [s],Fx [N],Fy [N],Fz [N]", *rows, ""])
 
 
