@@ -13,17 +13,6 @@ KINDS = (".py", ".md", ".toml", ".j2", ".proto")
 #: Pages about the words themselves, and history.
 NOT_READ = ("CONTRIBUTING.md", "CHANGELOG.md")
 
-#: Parts that still use words of the list; a part is removed here once it is clean.
-NOT_CLEAN: frozenset[str] = frozenset(
-    {
-        "docs/dexel.md",
-        "docs/drop-cutter.md",
-        "docs/offsets.md",
-        "docs/paths.md",
-        "twin/cam",
-    }
-)
-
 #: What must not be written, and what is written instead. A word ends where letters end: `told` is also in `_told`.
 FORBIDDEN = {
     r"(?<![a-z])(?:tell|tells|told|telling)(?![a-z])(?! apart)": "report, state, detect, determine",
@@ -86,15 +75,9 @@ def findings(path: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_terms_of_the_trade(name: str, request: pytest.FixtureRequest) -> None:
-    if name in NOT_CLEAN:  # `--runxfail` shows what is left
-        request.applymarker(pytest.mark.xfail(reason="words of the list are still used", strict=False))
+def test_terms_of_the_trade(name: str) -> None:
     found = [line for path in TEXTS[name] for line in findings(path)]
     assert not found, "\n" + "\n".join(found)
-
-
-def test_exempted_parts_exist() -> None:
-    assert set(TEXTS) >= NOT_CLEAN
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ _HALVINGS = 12
 _ROUNDS = 4
 #: Cells by which steep areas are widened: for level lines, and less where rows are omitted, so that both overlap.
 _WIDER, _LESS = 2, 1
-#: Fewer cells than this are no face, but noise.
+#: Areas of fewer cells than this are noise, not a face.
 _LEAST_CELLS = 4
 #: Highest and lowest line of a face lie this part of the step within it.
 _INSET = 0.1

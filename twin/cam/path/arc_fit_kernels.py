@@ -17,7 +17,7 @@ from twin.jit import njit
 
 
 class Limits(NamedTuple):
-    """What a piece may be.
+    """Limits of a piece.
 
     Attributes:
         left, right: how far it may lie to the left and right of the polyline as seen along it, mm.

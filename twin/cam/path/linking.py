@@ -56,7 +56,7 @@ class Pass:
 
 
 class LinkPlanner(Protocol):
-    """What is known of the space around the passes; tips are positions of the tool's tip."""
+    """The known free space around the passes; tips are positions of the tool's tip."""
 
     def between(self, start_mm: FloatArray, end_mm: FloatArray) -> FloatArray | None:
         """A link between two tips that cuts nothing of the part, shape (n, 3) with both ends; None without one."""
@@ -109,7 +109,7 @@ class LinkOptions:
 
     @property
     def entries(self) -> EntryOptions:
-        """What entries and leads need."""
+        """The options of entries and leads."""
         return EntryOptions(
             entry=self.entry,
             ramp_deg=self.ramp_deg,

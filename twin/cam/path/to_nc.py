@@ -182,7 +182,7 @@ def nc_events(operations: Iterable[Operation], options: NcOptions) -> Iterator[E
 
 
 def _above_longer(last: Operation, at: FloatArray, following: Operation, state: MotionState) -> Iterator[LinearMotion]:
-    """Up by as much as the following tool is longer, so that its tip is no lower than this one's."""
+    """Up by as much as the following tool is longer, so that its tip is not below this one."""
     longer = following.length_mm - last.length_mm
     if longer > 0.0:
         above = (float(at[0]), float(at[1]), float(at[2]) + longer)

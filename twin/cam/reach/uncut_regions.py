@@ -105,7 +105,7 @@ def uncut_regions(
         if distance[deepest] > thin_mm:
             part = pieces.some(np.flatnonzero(labels == label))
             thickest = float(distance[deepest]), points[deepest]
-            found.append(_leftover(part, planes_mm[part.planes], slabs_mm[part.planes], axis, *thickest))
+            found.append(_uncut_region(part, planes_mm[part.planes], slabs_mm[part.planes], axis, *thickest))
     return tuple(sorted(found, key=lambda r: -r.volume_mm3))
 
 
@@ -115,7 +115,7 @@ def _measured(pieces: Pieces) -> tuple[FloatArray, NDArray[np.int64]]:
     return np.concatenate((points, middles)), np.concatenate((of, fat))
 
 
-def _leftover(
+def _uncut_region(
     pieces: Pieces, planes_mm: FloatArray, slabs_mm: FloatArray, axis: int, thickness_mm: float, deepest_mm: FloatArray
 ) -> UncutRegion:
     volumes, bounds = pieces.areas_mm2 * (slabs_mm[:, 1] - slabs_mm[:, 0]), pieces.bounds_mm

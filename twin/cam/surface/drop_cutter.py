@@ -194,7 +194,7 @@ class DropCutter:
 
 
 def _elements(surface: Surface, tool: Meridian) -> kernels.Elements:
-    """What the tool can touch of a surface, as kernels take it."""
+    """The parts of a surface that the tool can touch, as kernels take them."""
     faces = np.empty((len(surface.triangles), kernels.FACE_COLUMNS))
     edges = np.empty((len(surface.ends), kernels.EDGE_COLUMNS))
     kernels.face_patches(surface.vertices_mm, surface.triangles, surface.normals, tool, faces)

@@ -21,7 +21,7 @@ from twin.jit import njit
 _THIN_RAD = 1e-10
 #: Cones are widened by this against rounding; more elements are tested, never a wrong height found.
 _WIDEN_RAD = 1e-9
-#: So many numbers are sorted by insertion.
+#: Up to this many numbers are sorted by insertion.
 _FEW = 64
 #: Steepest direction of a vertex cone, as a slope; what lies beyond is taken as level.
 _STEEPEST = 1e6
