@@ -1,0 +1,47 @@
+"""An archive that an earlier version wrote, described in tests/golden/README.md, is read as it was written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import twin
+
+ARCHIVE = Path(__file__).parents[2] / "golden" / "archive" / "slot_0_1_0.mcap"
+DIGEST = "df488a494958d9635c67a895e918a3beebe1bf3734408fc1c4a49084d6ffd601"
+
+
+@pytest.fixture(scope="module")
+def run() -> twin.Run:
+    return twin.open_run(ARCHIVE)
+
+
+def test_it_opens_whole(run: twin.Run) -> None:
+    assert run.complete
+    assert run.summary.digest == DIGEST
+    assert run.summary.removed_volume_mm3 == pytest.approx(13.1, abs=0.05)
+    # as the earlier version printed them
+    assert run.summary.peak_force_n == pytest.approx((20.5, 31.9, 14.9, 35.6), abs=0.05)
+    assert np.abs(run.forces["fy_n"]).max() == pytest.approx(run.summary.peak_force_n[1], rel=1e-6)
+    assert len(run.mesh().triangles) > 0
+
+
+def test_its_job_replays_to_the_same_digest(run: twin.Run, tmp_path: Path) -> None:
+    for attachment in run.header.attachments:
+        (tmp_path / Path(attachment.name).name).write_bytes(attachment.data)
+    assert twin.replay(tmp_path / "job.toml").summary.digest == DIGEST
+
+
+def test_its_table_measured_is_what_a_comparison_uses(run: twin.Run, tmp_path: Path) -> None:
+    forces = run.forces
+    # the job's map: x = -Fy, y = -Fx, z = Fz
+    times = np.arange(0.0, float(forces["t_s"][-1]), 1e-3)
+    columns = [np.interp(times, forces["t_s"], c) for c in (-forces["fy_n"], -forces["fx_n"], forces["fz_n"])]
+    log = tmp_path / "log.csv"
+    np.savetxt(log, np.column_stack([times, *columns]), delimiter=",")
+    found = twin.compare(ARCHIVE, log)
+    assert [window.span_s for window in found.windows] == [(1.0, 2.0)]
+    assert found.lag_s == pytest.approx(0.0, abs=1e-3)
+    assert all(error.rms_n < 0.02 * run.summary.peak_force_n[3] for error in found.windows[0].errors)
