@@ -22,13 +22,6 @@ PYTHON = SOURCES + sorted(
 PAGES = sorted((*ROOT.glob("*.md"), *(p for f in ("docs", "benchmarks", "tests") for p in (ROOT / f).rglob("*.md"))))
 MOST_LINES = 400
 MOST_PARAMETERS = 8
-#: Kernels whose parameters are not yet gathered in named tuples.
-WIDE_KERNELS = {
-    "twin/cam/path/machining_time_kernels.py",
-    "twin/cam/path/tour_kernels.py",
-    "twin/cam/slices/cl_line_kernels.py",
-    "twin/cam/surface/drop_cutter_kernels.py",
-}
 
 #: A name in backticks: words, perhaps joined by dots.
 _QUOTED = re.compile(r"`([^`\n]+)`")
@@ -93,7 +86,7 @@ def test_kernels_have_at_most_eight_parameters() -> None:
         and any("njit" in ast.unparse(d) for d in node.decorator_list)
         and len([*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]) > MOST_PARAMETERS
     }
-    assert {w for w in wide if w.split(":")[0] not in WIDE_KERNELS} == set()
+    assert wide == set()
 
 
 def test_numba_has_one_door() -> None:

@@ -91,6 +91,7 @@ def cut_planes(
     offsets, nodes, fresh = strips.offsets, strips.nodes, strips.fresh
     segments, toggles_lo, toggles_hi = scratch.segments, scratch.toggles_lo, scratch.toggles_hi
     work, out = scratch.work, scratch.out
+    # 64-bit numbers throughout: helpers are compiled once for each type of their arguments
     while cursor[PLANE] < len(offsets) - 1:
         node, end = offsets[cursor[PLANE]], offsets[cursor[PLANE] + 1] - 1
         plane = strips.first + cursor[PLANE]
@@ -114,7 +115,7 @@ def cut_planes(
                         put_edge(work, 0, Edge(box.c0, box.top, box.c1, box.top, 1.0))
                         count = cut_edges(work, 0, 1, pieces, segments, toggles_lo, toggles_hi, out)
                     else:
-                        begin, size = cells[cell, START], cells[cell, SIZE]
+                        begin, size = np.int64(cells[cell, START]), np.int64(cells[cell, SIZE])
                         count = cut_edges(pool, begin, size, pieces, segments, toggles_lo, toggles_hi, out)
                     if count < 0:
                         answer = SCRATCH_FULL
@@ -153,15 +154,15 @@ def _area(cell: int, box: Tile, cells: NDArray[np.int32], pool: FloatArray) -> f
     """Area of material in a cell."""
     area = (box.c1 - box.c0) * (box.top - box.floor)
     if cells[cell, STATE] != FULL:
-        area = area_above(pool, cells[cell, START], cells[cell, SIZE], box.floor)
+        area = area_above(pool, np.int64(cells[cell, START]), np.int64(cells[cell, SIZE]), box.floor)
     return area
 
 
 @njit
 def cut_edges(
     edges: FloatArray,
-    begin: int,
-    size: int,
+    begin: int | np.int64,
+    size: int | np.int64,
     pieces: int,
     segments: FloatArray,
     toggles_lo: FloatArray,

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from twin.arrays import FloatArray
 from twin.jit import njit
 
@@ -76,7 +78,7 @@ def crossing(a: float, b: float, da: float, db: float) -> float:
 
 
 @njit
-def area_above(edges: FloatArray, begin: int, count: int, floor: float) -> float:
+def area_above(edges: FloatArray, begin: int | np.int64, count: int | np.int64, floor: float) -> float:
     """Area of material that a cell's edges bound, above the cell's floor."""
     area = 0.0
     for e in range(begin, begin + count):

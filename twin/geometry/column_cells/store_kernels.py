@@ -101,7 +101,7 @@ def cell_at(page: NDArray[np.int64], table: int, tile: int) -> int:
 
 
 @njit
-def _block_class(count: int) -> int:
+def _block_class(count: int | np.int64) -> int:
     """Smallest power of two, as an exponent above the smallest block, that holds ``count`` edges."""
     size = _SMALLEST_BLOCK
     exponent = 0
@@ -115,7 +115,7 @@ def _block_class(count: int) -> int:
 def _release(cell: int, cells: NDArray[np.int32], pool: FloatArray, free: NDArray[np.int64]) -> None:
     """Return a cell's block of edges to the pool, if it has one."""
     if cells[cell, ROOM] > 0:
-        exponent = _block_class(cells[cell, ROOM])
+        exponent = _block_class(np.int64(cells[cell, ROOM]))
         pool[cells[cell, START], 0] = float(free[exponent])
         free[exponent] = cells[cell, START]
         cells[cell, ROOM] = 0
