@@ -35,8 +35,8 @@ def job(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def replayed(job: Path) -> twin.Run:
-    return twin.replay(job)
+def replayed(job: Path, tmp_path_factory: pytest.TempPathFactory) -> twin.Run:
+    return twin.replay(job, mcap=tmp_path_factory.mktemp("replayed") / "run.mcap")
 
 
 @pytest.fixture
