@@ -11,7 +11,8 @@ from __future__ import annotations
 import functools
 import importlib
 import signal
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -62,8 +63,25 @@ class Workers:
 
 
 @pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup(item: pytest.Item) -> Generator[None, object, object]:
+    """Make a test's fixtures within the limit."""
+    with limited():
+        return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
-    """Carry out a test within the limit; fixtures have none."""
+    """Carry out a test within the limit."""
+    with limited():
+        result = yield
+    called.update(noted)
+    noted.clear()
+    return result
+
+
+@contextmanager
+def limited() -> Iterator[None]:
+    """Skip the test at hand when the block takes too long."""
 
     def stop(*_: object) -> None:
         noted.clear()
@@ -72,13 +90,10 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, o
     usual = signal.signal(signal.SIGPROF, stop)
     signal.setitimer(signal.ITIMER_PROF, LIMIT_S)
     try:
-        result = yield
+        yield
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.signal(signal.SIGPROF, usual)
-    called.update(noted)
-    noted.clear()
-    return result
 
 
 @pytest.hookimpl(trylast=True)

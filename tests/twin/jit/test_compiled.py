@@ -103,9 +103,9 @@ def test_nothing_is_written_next_to_the_sources(kept: Path, source: Path, monkey
 
 
 def test_kernels_of_the_package_keep_their_code_elsewhere() -> None:
-    from twin.cutting import kernels
+    from twin.tools import meridian_kernels
 
-    functions = [f for f in vars(kernels).values() if isinstance(f, numba.core.dispatcher.Dispatcher)]
+    functions = [f for f in vars(meridian_kernels).values() if isinstance(f, numba.core.dispatcher.Dispatcher)]
     assert functions
     for function in functions:
         assert isinstance(function._cache, kept_code.KeptCode)
