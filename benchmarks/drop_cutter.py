@@ -61,11 +61,11 @@ def ocl_surface(ocl: Any, triangles: FloatArray) -> Any:
 
 def ocl_tool(ocl: Any, tool: ToolShape) -> Any:
     diameter = 2.0 * tool.nominal_radius_mm
-    if tool.corner_mm == 0.0:
+    if tool.corner_radius_mm == 0.0:
         return ocl.CylCutter(diameter, 100.0)
     if tool.disc_mm == 0.0:
         return ocl.BallCutter(diameter, 100.0)
-    return ocl.BullCutter(diameter, tool.corner_mm, 100.0)
+    return ocl.BullCutter(diameter, tool.corner_radius_mm, 100.0)
 
 
 def theirs(ocl: Any, triangles: FloatArray, tool: ToolShape, points: FloatArray) -> tuple[FloatArray, float, float]:

@@ -21,13 +21,13 @@ _BEYOND = 1e6
 
 def underside(tool: ToolShape, rho: FloatArray) -> FloatArray:
     """Height above the tip at a distance from the axis; a steep cone beyond the radius keeps it convex."""
-    off = np.clip(rho - tool.disc_mm, 0.0, tool.corner_mm)
-    height = tool.corner_mm - np.sqrt(tool.corner_mm**2 - off**2)
+    off = np.clip(rho - tool.disc_mm, 0.0, tool.corner_radius_mm)
+    height = tool.corner_radius_mm - np.sqrt(tool.corner_radius_mm**2 - off**2)
     if tool.taper_rad > 0.0:
         wall = tool.arc_height_mm + (rho - tool.arc_radius_mm) / math.tan(tool.taper_rad)
         height = np.where(rho > tool.arc_radius_mm, wall, height)
     over = rho - tool.max_radius_mm
-    edge = tool.height_mm if tool.taper_rad > 0.0 else tool.corner_mm
+    edge = tool.height_mm if tool.taper_rad > 0.0 else tool.corner_radius_mm
     return np.where(over > 0.0, edge + _BEYOND * over, height)
 
 

@@ -38,7 +38,7 @@ class Body:
         never reach below the tip's plane nevertheless.
         """
         enlarged = shape.circumscribed(chord_mm) if chord_mm > 0.0 else shape
-        drop = chord_mm if shape.corner_mm > 0.0 else 0.0
+        drop = chord_mm if shape.corner_radius_mm > 0.0 else 0.0
         return cls(BodyShape(enlarged.meridian, float(drop - above_tip_mm)))
 
     @property

@@ -21,7 +21,7 @@ def pitch_bound_mm(settings: PathSettings, setup: PlanSetup) -> float:
     It is 0 for levels of a flat tool, which need only the section at their own height, and for rows of the drop-cutter,
     which need no slices.
     """
-    if settings.exact or (settings.strategy == "contour" and setup.tool.corner_mm == 0.0):
+    if settings.exact or (settings.strategy == "contour" and setup.tool.corner_radius_mm == 0.0):
         return 0.0
     return sag_mm(setup.part.mesh, setup.tool, setup.sections)
 
@@ -39,7 +39,7 @@ def sag_mm(part: Solid, tool: ToolShape, sections: Sections) -> float:
     sine = slopes(vectors, sections.axis)
     gaps = np.concatenate(([0.0], np.diff(sections.positions_mm), [0.0, 0.0]))
     widest = np.maximum.reduceat(gaps, np.column_stack(gaps_of(part, which, sections)).ravel())[::2]
-    radius = tool.corner_mm or tool.nominal_radius_mm
+    radius = tool.corner_radius_mm or tool.nominal_radius_mm
     apart = np.minimum(widest / sine, 2.0 * radius)
     sag = np.minimum(radius - np.sqrt(radius**2 - 0.25 * apart**2), widest * np.sqrt(1.0 - sine**2))
     order = np.argsort(sag)

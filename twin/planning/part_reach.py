@@ -142,4 +142,4 @@ def reach(
 def _element(shape: ToolShape, settings: ReachSettings) -> StructuringElement:
     """A ball about its centre, which may come from any side, or a tool about its tip, from above."""
     any_side = shape.disc_mm == 0.0 and shape.taper_rad == 0.0 and not settings.above
-    return StructuringElement.ball(shape.corner_mm) if any_side else StructuringElement.tool(shape)
+    return StructuringElement.ball(shape.corner_radius_mm) if any_side else StructuringElement.tool(shape)

@@ -126,7 +126,7 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, progress: Pro
 def _sections(settings: PathSettings, part: SlicedPart, tool: ToolShape) -> Sections:
     """Sections across the rows, or level sections; closer together where the part is steep along them."""
     axis = ACROSS[settings.direction] if settings.strategy == "scan" else 2
-    level = settings.strategy == "contour" and tool.corner_mm + settings.allowance_mm == 0.0
+    level = settings.strategy == "contour" and tool.corner_radius_mm + settings.allowance_mm == 0.0
     return part.sections(axis) if settings.exact or level else with_steep_sections(part, axis)
 
 
@@ -166,7 +166,7 @@ def _scan(settings: PathSettings, setup: PlanSetup, progress: Progress) -> tuple
     low, high = setup.region_mm + setup.overhang_mm * np.array([[-1.0], [1.0]])
     at = row_positions(float(low[across]), float(high[across]), settings.stepover_mm)
     progress("profiles", 0.0)
-    apart = max(settings.pitch_mm, _POINTS_APART * setup.tool.corner_mm)
+    apart = max(settings.pitch_mm, _POINTS_APART * setup.tool.corner_radius_mm)
     samples = Samples.between(float(low[along]), float(high[along]), apart)
     planner = SurfaceLinkPlanner(
         lambda: _surface(setup.part.mesh),

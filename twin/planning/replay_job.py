@@ -61,8 +61,8 @@ def _tool(operation: Operation) -> dict[str, Any]:
         "flute_length_mm": shape.height_mm,
         "length_mm": operation.length_mm,
     }
-    if table["kind"] in ("bull", "taper") and shape.corner_mm:
-        table["corner_radius_mm"] = shape.corner_mm
+    if table["kind"] in ("bull", "taper") and shape.corner_radius_mm:
+        table["corner_radius_mm"] = shape.corner_radius_mm
     if shape.taper_rad:
         table["taper_deg"] = math.degrees(shape.taper_rad)
     return table

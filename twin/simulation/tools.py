@@ -107,7 +107,7 @@ def _rigid_bodies(
     for name, diameter, length in _pieces(tool):
         radius = 0.5 * diameter - tolerance.clearance_mm
         if radius > 0.0:
-            cylinder = ToolShape(disc_mm=radius, corner_mm=0.0, height_mm=length)
+            cylinder = ToolShape(disc_mm=radius, corner_radius_mm=0.0, height_mm=length)
             bodies.append((name, Body.of(cylinder, above_tip_mm=bottom + tolerance.clearance_mm)))
         bottom += length
     return tuple(bodies)

@@ -128,7 +128,7 @@ def meridian(shape: ToolShape, s_mm: FloatArray) -> MeridianPoints:
         s_mm: shape (n,), lengths.
     """
     out = np.empty((3, len(s_mm)))
-    meridian_points(s_mm, shape.disc_mm, shape.corner_mm, shape.taper_rad, out)
+    meridian_points(s_mm, shape.disc_mm, shape.corner_radius_mm, shape.taper_rad, out)
     return MeridianPoints(*out)
 
 
@@ -165,7 +165,7 @@ def _levels(height: float, step: float) -> FloatArray:
 
 def _length_to_height(shape: ToolShape, z: FloatArray) -> FloatArray:
     """Length along corner arc and wall from the end of the flat bottom to heights z."""
-    on_arc = shape.corner_mm * shape.kappa_rad(np.minimum(z, shape.arc_height_mm * (1.0 - 1e-15)))
-    at_end = shape.corner_mm * (0.5 * math.pi - shape.taper_rad)
+    on_arc = shape.corner_radius_mm * shape.kappa_rad(np.minimum(z, shape.arc_height_mm * (1.0 - 1e-15)))
+    at_end = shape.corner_radius_mm * (0.5 * math.pi - shape.taper_rad)
     wall = (z - shape.arc_height_mm) / math.cos(shape.taper_rad)
     return np.asarray(np.where(z < shape.arc_height_mm, on_arc, at_end + wall))

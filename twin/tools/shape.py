@@ -31,7 +31,7 @@ class ToolShape:
 
     Attributes:
         disc_mm: radius of the flat bottom.
-        corner_mm: radius of the corner arc, 0 for a sharp corner.
+        corner_radius_mm: radius of the corner arc, 0 for a sharp corner.
         taper_rad: half angle of the wall, 0 for a cylinder.
         height_mm: height of the cutting part above the tip (flute length).
 
@@ -40,16 +40,16 @@ class ToolShape:
     """
 
     disc_mm: float
-    corner_mm: float
+    corner_radius_mm: float
     taper_rad: float = 0.0
     height_mm: float
 
     def __post_init__(self) -> None:
-        for name in ("disc_mm", "corner_mm", "taper_rad", "height_mm"):
+        for name in ("disc_mm", "corner_radius_mm", "taper_rad", "height_mm"):
             value = getattr(self, name)
             if not math.isfinite(value) or value < 0.0:
                 raise ToolError(f"tool shape: {name} = {value}, expected a finite number not below 0")
-        if self.disc_mm + self.corner_mm <= 0.0 or self.height_mm <= 0.0:
+        if self.disc_mm + self.corner_radius_mm <= 0.0 or self.height_mm <= 0.0:
             raise ToolError("tool shape: diameter and flute length must be greater than 0")
         if self.taper_rad >= 0.5 * math.pi:
             raise ToolError(f"tool shape: taper half angle {math.degrees(self.taper_rad)} deg, expected below 90")
@@ -62,12 +62,12 @@ class ToolShape:
     @property
     def arc_height_mm(self) -> float:
         """Height where the corner arc meets the wall."""
-        return self.corner_mm * (1.0 - math.sin(self.taper_rad))
+        return self.corner_radius_mm * (1.0 - math.sin(self.taper_rad))
 
     @property
     def arc_radius_mm(self) -> float:
         """Radius where the corner arc meets the wall."""
-        return self.disc_mm + self.corner_mm * math.cos(self.taper_rad)
+        return self.disc_mm + self.corner_radius_mm * math.cos(self.taper_rad)
 
     @property
     def max_radius_mm(self) -> float:
@@ -77,14 +77,14 @@ class ToolShape:
     @property
     def nominal_radius_mm(self) -> float:
         """Half the tool's nominal diameter: disc plus corner arc."""
-        return self.disc_mm + self.corner_mm
+        return self.disc_mm + self.corner_radius_mm
 
     @property
     def meridian(self) -> Meridian:
         """The form that kernels take."""
         return Meridian(
             disc=float(self.disc_mm),
-            corner=float(self.corner_mm),
+            corner=float(self.corner_radius_mm),
             tangent=math.tan(self.taper_rad),
             arc_radius=float(self.arc_radius_mm),
             arc_height=float(self.arc_height_mm),
@@ -98,7 +98,7 @@ class ToolShape:
         return np.array(
             [
                 self.disc_mm,
-                self.corner_mm,
+                self.corner_radius_mm,
                 math.tan(self.taper_rad),
                 self.arc_radius_mm,
                 self.arc_height_mm,
@@ -113,13 +113,16 @@ class ToolShape:
         The corner arc keeps its centre and grows in radius; what would reach below the tip's plane is cut off there,
         so that floors stay exact.
         """
-        if self.corner_mm == 0.0:
+        if self.corner_radius_mm == 0.0:
             return ToolShape(
-                disc_mm=self.disc_mm + chord_mm, corner_mm=0.0, taper_rad=self.taper_rad, height_mm=self.height_mm
+                disc_mm=self.disc_mm + chord_mm,
+                corner_radius_mm=0.0,
+                taper_rad=self.taper_rad,
+                height_mm=self.height_mm,
             )
         return ToolShape(
             disc_mm=self.disc_mm,
-            corner_mm=self.corner_mm + chord_mm,
+            corner_radius_mm=self.corner_radius_mm + chord_mm,
             taper_rad=self.taper_rad,
             height_mm=self.height_mm + chord_mm,
         )
@@ -127,7 +130,7 @@ class ToolShape:
     def radius_mm(self, z_mm: ArrayLike) -> FloatArray:
         """Radius r(z) at heights above the tip; heights are clipped to [0, height]."""
         z = np.clip(np.asarray(z_mm, dtype=np.float64), 0.0, self.height_mm)
-        arc = self.disc_mm + np.sqrt(np.maximum(0.0, self.corner_mm**2 - (self.corner_mm - z) ** 2))
+        arc = self.disc_mm + np.sqrt(np.maximum(0.0, self.corner_radius_mm**2 - (self.corner_radius_mm - z) ** 2))
         wall = self.arc_radius_mm + (z - self.arc_height_mm) * math.tan(self.taper_rad)
         return np.asarray(np.where(z < self.arc_height_mm, arc, wall))
 
@@ -135,21 +138,21 @@ class ToolShape:
         """Angle kappa(z) between the outward normal and the tool axis, 0 at a ball's tip."""
         z = np.asarray(z_mm, dtype=np.float64)
         wall = 0.5 * math.pi - self.taper_rad
-        if self.corner_mm == 0.0:
+        if self.corner_radius_mm == 0.0:
             return np.full(z.shape, wall)
-        arc = np.arccos(np.clip(1.0 - z / self.corner_mm, -1.0, 1.0))
+        arc = np.arccos(np.clip(1.0 - z / self.corner_radius_mm, -1.0, 1.0))
         return np.asarray(np.where(z < self.arc_height_mm, arc, wall))
 
     def profile_mm(self, chord_mm: float = 0.01) -> FloatArray:
         """Polyline of the meridian from the axis at the tip to the top, shape (n, 2): radius and height."""
         points = [(0.0, 0.0)] if self.disc_mm > 0.0 else []
-        if self.corner_mm > 0.0:
+        if self.corner_radius_mm > 0.0:
             end = 0.5 * math.pi - self.taper_rad
-            n = max(2, math.ceil(end / (2.0 * math.acos(max(0.0, 1.0 - chord_mm / self.corner_mm)) + 1e-12)))
+            n = max(2, math.ceil(end / (2.0 * math.acos(max(0.0, 1.0 - chord_mm / self.corner_radius_mm)) + 1e-12)))
             for i in range(n + 1):
                 kappa = end * i / n
-                radius = self.disc_mm + self.corner_mm * math.sin(kappa)
-                points.append((radius, self.corner_mm * (1.0 - math.cos(kappa))))
+                radius = self.disc_mm + self.corner_radius_mm * math.sin(kappa)
+                points.append((radius, self.corner_radius_mm * (1.0 - math.cos(kappa))))
         else:
             points.append((self.disc_mm, 0.0))
         if self.height_mm > self.arc_height_mm:
@@ -182,4 +185,4 @@ def tool_shape(
     if corner > radius:
         raise ToolError(f"tool shape: corner_radius_mm = {corner}, expected at most half the diameter, {radius}")
     taper = math.radians(taper_deg) if kind == "taper" else 0.0
-    return ToolShape(disc_mm=radius - corner, corner_mm=corner, taper_rad=taper, height_mm=flute_length_mm)
+    return ToolShape(disc_mm=radius - corner, corner_radius_mm=corner, taper_rad=taper, height_mm=flute_length_mm)

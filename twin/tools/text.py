@@ -63,8 +63,8 @@ def tool_text(shape: ToolShape) -> str:
     if shape.taper_rad > 0.0:
         from math import degrees
 
-        corner = f" r{shape.corner_mm:g}" if shape.corner_mm else ""
+        corner = f" r{shape.corner_radius_mm:g}" if shape.corner_radius_mm else ""
         return f"taper {diameter} a{degrees(shape.taper_rad):g}{corner}"
-    if shape.corner_mm == 0.0:
+    if shape.corner_radius_mm == 0.0:
         return f"flat {diameter}"
-    return f"ball {diameter}" if shape.disc_mm == 0.0 else f"bull {diameter} r{shape.corner_mm:g}"
+    return f"ball {diameter}" if shape.disc_mm == 0.0 else f"bull {diameter} r{shape.corner_radius_mm:g}"

@@ -75,7 +75,7 @@ def test_slanted_motions_leave_the_envelope_of_all_positions(text: str) -> None:
     # positions are 0.01 mm apart: a rounded underside stands off by its curve, a sharp edge by the slope times that
     assert (dexels.heights_mm <= dense + 1e-12).all()
     off = (dense - dexels.heights_mm).ravel()
-    assert np.sort(off)[:-8].max() < (5e-3 if tool.corner_mm == 0.0 else 5e-4)
+    assert np.sort(off)[:-8].max() < (5e-3 if tool.corner_radius_mm == 0.0 else 5e-4)
 
 
 def test_a_ball_slot_has_its_closed_form() -> None:

@@ -48,7 +48,7 @@ def test_on_a_slope(text: str, slope: float) -> None:
     # it is touched where the meridian has its angle: disc tan + corner / cos - corner, or at the top rim of a cone
     tool = parse_tool(text)
     cos = 1.0 / math.hypot(1.0, slope)
-    rise = tool.disc_mm * slope + tool.corner_mm * (1.0 / cos - 1.0)
+    rise = tool.disc_mm * slope + tool.corner_radius_mm * (1.0 / cos - 1.0)
     if slope * math.tan(tool.taper_rad) > 1.0:
         rise = tool.max_radius_mm * slope - tool.height_mm
     found = DropCutter(square(2.0, slope_x=slope * 0.6, slope_y=slope * 0.8), text).contacts(HERE)
@@ -88,7 +88,7 @@ def test_a_bull_tool_on_an_edge_satisfies_its_equations() -> None:
 @pytest.mark.parametrize("text", TOOLS)
 def test_on_a_vertex_alone_the_meridian_is_seen(text: str) -> None:
     tool = parse_tool(text)
-    top = tool.height_mm if tool.taper_rad > 0.0 else tool.corner_mm
+    top = tool.height_mm if tool.taper_rad > 0.0 else tool.corner_radius_mm
     heights = np.linspace(0.0, top, 40)[1:-1]
     rho = np.concatenate((np.linspace(0.0, tool.disc_mm, 5), tool.radius_mm(heights) if top > 0.0 else []))
     expected = -np.concatenate((np.zeros(5), heights if top > 0.0 else []))
@@ -276,7 +276,7 @@ def test_triangles_that_are_none_are_refused(triangles: FloatArray, message: str
 
 def test_a_floor_that_is_no_number_is_refused() -> None:
     with pytest.raises(ToolError, match="floor_mm is not a number"):
-        DropCutter(square(), ToolShape(disc_mm=1.0, corner_mm=0.0, height_mm=3.0), floor_mm=math.nan)
+        DropCutter(square(), ToolShape(disc_mm=1.0, corner_radius_mm=0.0, height_mm=3.0), floor_mm=math.nan)
 
 
 def test_points_need_two_columns() -> None:

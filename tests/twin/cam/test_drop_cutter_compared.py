@@ -99,7 +99,7 @@ def test_opencamlib_gives_the_same_heights(text: str, size: int, shape: Callable
     cutter = {
         "ball": lambda: ocl.BallCutter(diameter, length),
         "flat": lambda: ocl.CylCutter(diameter, length),
-        "bull": lambda: ocl.BullCutter(diameter, tool.corner_mm, length),
+        "bull": lambda: ocl.BullCutter(diameter, tool.corner_radius_mm, length),
     }[text.split()[0]]()
     surface = ocl.STLSurf()
     for t in triangles:

@@ -53,7 +53,7 @@ def test_a_drafted_wall_along_the_rows_is_known_well(text: str, draft_deg: float
     assert len(more.positions_mm) > len(even.positions_mm)
     found, shape = gouge_mm(part, more, text), parse_tool(text)
     # tips on lines that are three pitches apart along the wall, or a sixteenth of a pitch from one to the next
-    assert found <= sag_mm(part.mesh, shape, more) <= min(0.6**2 / (7.9 * shape.corner_mm), 0.2)
+    assert found <= sag_mm(part.mesh, shape, more) <= min(0.6**2 / (7.9 * shape.corner_radius_mm), 0.2)
     assert gouge_mm(part, even, text) > 2.0 * found + 0.005
 
 

@@ -32,7 +32,7 @@ def tips(path: ToolPath, *kinds: MoveKind) -> FloatArray:
 
 def inside_mm(plan: MoldPlan, path: ToolPath, smaller_mm: float) -> float:
     """How far a tool that is thinner all around by so much would be in the part at most; negative where it is free."""
-    thin = replace(path.tool, corner_mm=path.tool.corner_mm - smaller_mm, height_mm=path.tool.height_mm)
+    thin = replace(path.tool, corner_radius_mm=path.tool.corner_radius_mm - smaller_mm, height_mm=path.tool.height_mm)
     at = tips(path)
     lowest = DropCutter(plan.surface, thin).drop(np.ascontiguousarray(at[:, :2])) - smaller_mm
     return float((lowest - at[:, 2]).max())

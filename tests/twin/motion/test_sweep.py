@@ -100,7 +100,7 @@ def test_a_tool_exactly_on_a_plane_is_cut_by_it() -> None:
 
 
 def test_a_body_standing_over_the_tip_is_moved_up() -> None:
-    shank = ToolShape(disc_mm=2.0, corner_mm=0.0, height_mm=5.0)
+    shank = ToolShape(disc_mm=2.0, corner_radius_mm=0.0, height_mm=5.0)
     sweep = Sweep(Body.of(shank, above_tip_mm=10.0), np.zeros(3), np.zeros(3))
     low, high = sweep.bounds_mm
     assert low.tolist() == [-2.0, -2.0, 10.0]

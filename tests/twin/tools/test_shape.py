@@ -93,7 +93,7 @@ def test_uneven_teeth_stand_where_their_pitches_say() -> None:
             "tool shape: the corner arc ends 4.0 mm above the tip, expected not above the flute length 3.0 mm",
         ),
         (
-            lambda: ToolShape(disc_mm=math.nan, corner_mm=1.0, height_mm=3.0),
+            lambda: ToolShape(disc_mm=math.nan, corner_radius_mm=1.0, height_mm=3.0),
             "tool shape: disc_mm = nan, expected a finite number not below 0",
         ),
         (

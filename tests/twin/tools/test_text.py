@@ -20,10 +20,10 @@ from twin.tools.text import parse_tool, tool_text
 )
 def test_words_to_tools(text: str, disc: float, corner: float, taper: float, flutes: float) -> None:
     shape = parse_tool(text)
-    assert (shape.disc_mm, shape.corner_mm, shape.height_mm) == (disc, corner, flutes)
+    assert (shape.disc_mm, shape.corner_radius_mm, shape.height_mm) == (disc, corner, flutes)
     assert shape.taper_rad == pytest.approx(taper)
     again = parse_tool(tool_text(shape))
-    assert (again.disc_mm, again.corner_mm) == (disc, corner)
+    assert (again.disc_mm, again.corner_radius_mm) == (disc, corner)
     assert again.taper_rad == pytest.approx(taper)
 
 

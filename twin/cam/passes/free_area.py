@@ -33,7 +33,7 @@ _RADIUS_STEP_MM, _MOST_STEPS = 0.3, 10
 
 def tool_steps(tool: ToolShape) -> tuple[tuple[float, float], ...]:
     """Heights above the tip, and the largest radius from each to the next one; the last is the largest of all."""
-    if tool.corner_mm == 0.0 and tool.taper_rad == 0.0:
+    if tool.corner_radius_mm == 0.0 and tool.taper_rad == 0.0:
         return ((0.0, tool.max_radius_mm),)
     reach = tool.max_radius_mm - tool.disc_mm
     count = max(1, min(_MOST_STEPS, math.ceil(reach / _RADIUS_STEP_MM)))
@@ -45,7 +45,7 @@ def tool_steps(tool: ToolShape) -> tuple[tuple[float, float], ...]:
 def _height_at(tool: ToolShape, radius_mm: float) -> float:
     """Height above the tip where the meridian has a radius."""
     if radius_mm <= tool.arc_radius_mm:
-        return tool.corner_mm - math.sqrt(max(0.0, tool.corner_mm**2 - (radius_mm - tool.disc_mm) ** 2))
+        return tool.corner_radius_mm - math.sqrt(max(0.0, tool.corner_radius_mm**2 - (radius_mm - tool.disc_mm) ** 2))
     return tool.arc_height_mm + (radius_mm - tool.arc_radius_mm) / math.tan(tool.taper_rad)
 
 

@@ -203,7 +203,7 @@ def linked(
         link_mm_min=feeds.link,
         stay_down_mm=stay_down_mm,
         low_links=True,
-        entry="plunge" if tool.corner_mm >= 0.5 * tool.nominal_radius_mm else "ramp",
+        entry="plunge" if tool.corner_radius_mm >= 0.5 * tool.nominal_radius_mm else "ramp",
     )
     moves = link(passes, linking, planner) if passes else ()
     return fit_path(ToolPath(moves=moves, tool=tool, name="semi-finishing"), FIT)

@@ -54,7 +54,9 @@ class SurfaceLinkPlanner:
             self._surface = self._make()
         if left_mm not in self._cutters:
             tool = replace(
-                self._tool, corner_mm=self._tool.corner_mm + left_mm, height_mm=self._tool.height_mm + left_mm
+                self._tool,
+                corner_radius_mm=self._tool.corner_radius_mm + left_mm,
+                height_mm=self._tool.height_mm + left_mm,
             )
             self._cutters[left_mm] = DropCutter(self._surface, tool, floor_mm=self._floor - left_mm)
         heights: FloatArray = self._cutters[left_mm].drop(xy_mm) + left_mm

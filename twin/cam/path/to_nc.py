@@ -141,7 +141,7 @@ def plain_comment(text: str) -> str:
 def describe(tool: ToolShape) -> str:
     """A tool in a few words: ``ball D8``."""
     kind, diameter = kind_of(tool), 2.0 * tool.nominal_radius_mm
-    corner = f" rc{tool.corner_mm:g}" if kind in ("bull", "taper") and tool.corner_mm else ""
+    corner = f" rc{tool.corner_radius_mm:g}" if kind in ("bull", "taper") and tool.corner_radius_mm else ""
     return f"{kind} D{diameter:g}{corner}"
 
 
@@ -149,7 +149,7 @@ def kind_of(tool: ToolShape) -> Literal["flat", "ball", "bull", "taper"]:
     """The catalogue's name of a shape."""
     if tool.taper_rad:
         return "taper"
-    if tool.corner_mm == 0.0:
+    if tool.corner_radius_mm == 0.0:
         return "flat"
     return "ball" if tool.disc_mm == 0.0 else "bull"
 

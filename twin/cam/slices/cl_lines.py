@@ -125,7 +125,7 @@ def _heights(
     heights, best = np.empty((len(planes), samples.count)), np.empty((len(planes), samples.count), dtype=np.int64)
 
     row = kernels.SampleRow(float(samples.start_mm), float(samples.step_mm), samples.count)
-    end = kernels.ToolEnd(float(element.disc_mm), float(element.corner_mm))
+    end = kernels.ToolEnd(float(element.disc_mm), float(element.corner_radius_mm))
 
     def part(first: int, last: int) -> None:
         kernels.envelope(profiles.pieces, end, planes[first:last], row, smooth, heights[first:last], best[first:last])
@@ -224,7 +224,7 @@ def _refined(
     starts = np.column_stack((planes_mm, samples.at_mm[cells]))
     heights = np.empty((len(cells), FINER + 1))
 
-    end, step = kernels.ToolEnd(float(element.disc_mm), float(element.corner_mm)), float(samples.step_mm) / FINER
+    end, step = kernels.ToolEnd(float(element.disc_mm), float(element.corner_radius_mm)), float(samples.step_mm) / FINER
 
     def part(first: int, last: int) -> None:
         kernels.refine(profiles.pieces, end, starts[first:last], touched[first:last], step, smooth, heights[first:last])

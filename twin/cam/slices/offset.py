@@ -80,7 +80,7 @@ def bound_mm(element: StructuringElement, pitch_mm: float, slope_rad: float = 0.
     Args:
         slope_rad: angle between the surface and the planes of the slices; 90 degrees if not given.
     """
-    radius = element.corner_mm if element.corner_mm > 0.0 else element.radius_mm
+    radius = element.corner_radius_mm if element.corner_radius_mm > 0.0 else element.radius_mm
     sine = math.sin(slope_rad)
     return min(0.5 * pitch_mm, pitch_mm**2 / (4.0 * radius * sine * sine)) if sine > 0.0 else 0.5 * pitch_mm
 

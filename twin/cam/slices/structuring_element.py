@@ -24,19 +24,19 @@ class StructuringElement:
 
     Attributes:
         disc_mm: radius of the flat bottom, 0 for balls.
-        corner_mm: radius of the corner arc, 0 for flat tools.
+        corner_radius_mm: radius of the corner arc, 0 for flat tools.
         drop_mm: how far the body reaches below its reference point: the radius of a centred ball, the allowance of a
             tool.
         centred: whether this is a ball about its centre; it ends at the top as it does at the bottom.
     """
 
     disc_mm: float
-    corner_mm: float
+    corner_radius_mm: float
     drop_mm: float
     centred: bool
 
     def __post_init__(self) -> None:
-        for name in ("disc_mm", "corner_mm"):
+        for name in ("disc_mm", "corner_radius_mm"):
             value = getattr(self, name)
             if not math.isfinite(value) or value < 0.0:
                 raise ToolError(f"structuring element: {name} = {value}, expected a finite number not below 0")
@@ -46,7 +46,7 @@ class StructuringElement:
     @classmethod
     def ball(cls, radius_mm: float) -> StructuringElement:
         """A ball; its reference point is its centre."""
-        return cls(disc_mm=0.0, corner_mm=radius_mm, drop_mm=radius_mm, centred=True)
+        return cls(disc_mm=0.0, corner_radius_mm=radius_mm, drop_mm=radius_mm, centred=True)
 
     @classmethod
     def tool(cls, shape: ToolShape) -> StructuringElement:
@@ -57,7 +57,7 @@ class StructuringElement:
         """
         if shape.taper_rad > 0.0:
             raise ToolError("offsets with taper tools: not possible; expected a ball, flat or bull-nose tool")
-        return cls(disc_mm=shape.disc_mm, corner_mm=shape.corner_mm, drop_mm=0.0, centred=False)
+        return cls(disc_mm=shape.disc_mm, corner_radius_mm=shape.corner_radius_mm, drop_mm=0.0, centred=False)
 
     def with_allowance(self, allowance_mm: float) -> StructuringElement:
         """The element inflated by a ball, so that this much is left on the part everywhere.
@@ -65,13 +65,14 @@ class StructuringElement:
         Raises:
             ToolError: a negative allowance larger than the corner arc.
         """
-        if self.corner_mm + allowance_mm < 0.0:
+        if self.corner_radius_mm + allowance_mm < 0.0:
             raise ToolError(
-                f"allowance {allowance_mm:g} mm; expected not below {0.0 - self.corner_mm:g}, the tool's corner radius"
+                f"allowance {allowance_mm:g} mm; "
+                f"expected not below {0.0 - self.corner_radius_mm:g}, the tool's corner radius"
             )
         return StructuringElement(
             disc_mm=self.disc_mm,
-            corner_mm=self.corner_mm + allowance_mm,
+            corner_radius_mm=self.corner_radius_mm + allowance_mm,
             drop_mm=self.drop_mm + allowance_mm,
             centred=self.centred,
         )
@@ -79,7 +80,7 @@ class StructuringElement:
     @property
     def radius_mm(self) -> float:
         """Largest radius."""
-        return self.disc_mm + self.corner_mm
+        return self.disc_mm + self.corner_radius_mm
 
     def z_radii_mm(self, above_mm: FloatArray) -> FloatArray:
         """Radius that a section must be inflated by on a plane normal to z that is this far below it (eq. 1).
@@ -91,13 +92,13 @@ class StructuringElement:
             shape of ``above_mm``; NaN where the section does not reach the plane.
         """
         height = np.asarray(above_mm, dtype=np.float64) + self.drop_mm
-        below = self.corner_mm - height
-        arc = self.disc_mm + np.sqrt(np.maximum(0.0, self.corner_mm**2 - below**2))
+        below = self.corner_radius_mm - height
+        arc = self.disc_mm + np.sqrt(np.maximum(0.0, self.corner_radius_mm**2 - below**2))
         top = np.where(below >= 0.0, arc, arc if self.centred else self.radius_mm)
-        gone = (height < 0.0) | ((height > 2.0 * self.corner_mm) if self.centred else False)
+        gone = (height < 0.0) | ((height > 2.0 * self.corner_radius_mm) if self.centred else False)
         return np.asarray(np.where(gone, np.nan, top))
 
     def ball_radii_mm(self, distance_mm: FloatArray) -> FloatArray:
         """Radius sqrt(r^2 - d^2) of a centred ball's section at a distance (eq. 1), NaN beyond r."""
-        left = self.corner_mm**2 - np.asarray(distance_mm, dtype=np.float64) ** 2
+        left = self.corner_radius_mm**2 - np.asarray(distance_mm, dtype=np.float64) ** 2
         return np.asarray(np.where(left < 0.0, np.nan, np.sqrt(np.maximum(left, 0.0))))

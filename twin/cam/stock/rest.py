@@ -151,7 +151,7 @@ def grown(tool: ToolShape, by_mm: float) -> ToolShape:
         return tool
     return ToolShape(
         disc_mm=tool.disc_mm,
-        corner_mm=tool.corner_mm + by_mm,
+        corner_radius_mm=tool.corner_radius_mm + by_mm,
         taper_rad=tool.taper_rad,
         height_mm=tool.height_mm + by_mm,
     )

@@ -1,7 +1,7 @@
 """Where a tool lowered along its axis first touches a surface of faces, edges and vertices; compiled.
 
-The tool tip's height over a plan point is the largest of z - h(r) over all points of the surface within the tool's
-radius, h its meridian. It is found on a face where the normals of face and tool agree, inside an edge, or at a vertex.
+The tool tip's height over a plan point is the largest of z - ζ(r) over all points of the surface within the tool's
+radius, ζ its meridian. It is found on a face where the normals of face and tool agree, inside an edge, or at a vertex.
 Seen from the tool, every element is a patch of the plan: the positions at which the tool can rest on it. Patches are
 listed in the cells of a grid; a query tests the elements of one cell. Patches may be drawn too large, never too small:
 every element tested gives a true contact, so the largest is right however many are tested.

@@ -119,10 +119,10 @@ def unit_coefficients(index: int) -> CuttingCoefficients:
 def _edges(cut: StraightPass, count: int) -> CuttingEdges:
     """Elements of equal length on corner arc and on wall, up to the stock's top; the flat bottom does not cut."""
     shape, depth = cut.shape, cut.axial_depth_mm
-    on_arc = shape.corner_mm * float(shape.kappa_rad(min(depth, shape.arc_height_mm * (1.0 - 1e-15))))
+    on_arc = shape.corner_radius_mm * float(shape.kappa_rad(min(depth, shape.arc_height_mm * (1.0 - 1e-15))))
     on_wall = max(0.0, depth - shape.arc_height_mm) / math.cos(shape.taper_rad)
     if on_wall > 0.0:
-        on_arc = shape.corner_mm * (0.5 * math.pi - shape.taper_rad)
+        on_arc = shape.corner_radius_mm * (0.5 * math.pi - shape.taper_rad)
     bounds = np.array([0.0])
     for length in (on_arc, on_wall):
         if length > 0.0:
