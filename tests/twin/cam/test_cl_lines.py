@@ -40,6 +40,7 @@ def torus_part() -> SlicedPart:
 ROWS = np.concatenate((np.arange(-29.75, 30.0, 2.5), [-26.55, -12.0, 12.0125, 12.3, 26.5]))
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("axis", [0, 1])
 def test_a_ball_at_50_um_is_within_5_um_and_nearly_always_within_1(torus_part: SlicedPart, axis: int) -> None:
     assert np.abs(errors_um(torus_part, "ball 8", axis, ROWS)).max() <= 5.0
@@ -47,6 +48,7 @@ def test_a_ball_at_50_um_is_within_5_um_and_nearly_always_within_1(torus_part: S
     assert np.mean(off <= 1.0) >= 0.999
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("text", "most_um", "share"),
     [("flat 8", 4.0, 0.99), ("flat 3", 4.0, 0.99), ("bull 8 r1", 4.0, 0.99), ("bull 8 r0.3", 12.0, 0.98)],
@@ -57,6 +59,7 @@ def test_other_tools(torus_part: SlicedPart, text: str, most_um: float, share: f
     assert np.mean(off <= 1.0) >= share
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("text", ["ball 8", "flat 8", "bull 8 r1"])
 def test_without_interpolation_heights_are_never_too_large(torus_part: SlicedPart, text: str) -> None:
     off = errors_um(torus_part, text, 1, ROWS[::3], smooth=False)
@@ -134,6 +137,7 @@ def test_a_ridge_between_slices_is_met() -> None:
     assert even[1, 0] < 3.87 - 0.05
 
 
+@pytest.mark.compiled
 def test_an_allowance_lifts_as_a_larger_ball_does(torus_part: SlicedPart) -> None:
     profiles, places = Profiles.of(torus_part.sections(1)), Samples.between(-20.0, 20.0, 0.5)
     rows = np.array([0.1, 11.3])
@@ -142,6 +146,7 @@ def test_an_allowance_lifts_as_a_larger_ball_does(torus_part: SlicedPart) -> Non
     np.testing.assert_allclose(left, centre - 4.0, atol=1e-12)
 
 
+@pytest.mark.compiled
 def test_threads_change_nothing_and_no_part_is_no_height(torus_part: SlicedPart) -> None:
     profiles, places = Profiles.of(torus_part.sections(1)), Samples.between(-40.0, 40.0, 0.3)
     tool = StructuringElement.tool(parse_tool("ball 8"))
@@ -153,6 +158,7 @@ def test_threads_change_nothing_and_no_part_is_no_height(torus_part: SlicedPart)
     assert np.isneginf(cl_heights(profiles, tool, rows[:1], places)).all()
 
 
+@pytest.mark.compiled
 def test_sections_across_z_have_no_profiles(torus_part: SlicedPart) -> None:
     with pytest.raises(ValueError, match="profiles need sections across x or y, got axis 2"):
         Profiles.of(torus_part.sections(2))
