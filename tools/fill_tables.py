@@ -1,4 +1,4 @@
-"""Put tables of keys and options into the pages, each after its mark ``<!-- keys of twin.job.model.Program -->``.
+"""Put tables of keys and options into the pages, each after its mark ``<!-- keys of twin.job.job_file.Program -->``.
 
 ``<!-- keys of MODEL without BASE -->`` omits the keys of a base; ``<!-- options of MODEL -->`` lists options.
 

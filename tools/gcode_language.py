@@ -15,7 +15,8 @@ from gcode.control import variables
 from gcode.cycles.hole import MOST_STEPS
 from gcode.dialects import ArcTolerance, DwellWord
 from gcode.dialects.macro_language import FANUC_MACRO, LINUXCNC_MACRO, MacroLanguage
-from gcode.flow import leader, owords
+from gcode.flow import owords
+from gcode.flow import tape_leader as leader
 from gcode.flow.system_variables import _CONSTANTS as CONSTANTS
 from gcode.flow.system_variables import _NAMED as NAMED
 from gcode.language import block_parser, program

@@ -8,10 +8,10 @@ All lengths are mm; motions are in machine coordinates.
 from __future__ import annotations
 
 from gcode.compensation.fanuc import FanucCompensation, signed
+from gcode.compensation.fanuc_vectors import Joint, StartupType
 from gcode.compensation.interface import Compensation, Hand, Style, finite_radius
 from gcode.compensation.interface import plane_refused as _plane_refused
 from gcode.compensation.linuxcnc import LinuxCncCompensation
-from gcode.compensation.offset_vectors import Joint, StartupType
 from gcode.compensation.planar import WorkingPlane
 from gcode.errors import Place
 from gcode.events import Event, Motion, Plane, Point

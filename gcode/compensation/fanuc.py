@@ -1,7 +1,7 @@
 """Cutter compensation of FANUC's controls (operator's manual, "Details of cutter compensation").
 
 The control reads one motion in the plane ahead: each motion waits until the next one determines its end. At the end of
-a block offset vectors lead from the programmed corner to the tool's centre (`gcode.compensation.offset_vectors`).
+a block offset vectors lead from the programmed corner to the tool's centre (`gcode.compensation.fanuc_vectors`).
 Offsets are signed here: positive to the left of the path, negative to the right.
 """
 
@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from gcode.compensation.interface import Compensation, Hand, finite_radius, fits, gouge
-from gcode.compensation.offset_vectors import (
+from gcode.compensation.fanuc_vectors import (
     Corner,
     Joint,
     StartupType,
@@ -19,6 +18,7 @@ from gcode.compensation.offset_vectors import (
     startup_vectors,
     upright,
 )
+from gcode.compensation.interface import Compensation, Hand, finite_radius, fits, gouge
 from gcode.compensation.planar import Segment, dot
 from gcode.errors import GcodeError, Place
 from gcode.events import Block, Event, LinearMotion, Motion, Notice, Point

@@ -12,8 +12,8 @@ import cmath
 import math
 from dataclasses import dataclass, replace
 
-from gcode.compensation.concave import meeting_point
 from gcode.compensation.interface import Compensation, Hand, fits, gouge
+from gcode.compensation.linuxcnc_concave import meeting_point
 from gcode.compensation.planar import Segment, dot, swept, unit
 from gcode.errors import GcodeError, Place
 from gcode.events import Event, LinearMotion, Motion, Point

@@ -17,12 +17,12 @@ from gcode.events import ArcMotion, Event, LinearMotion, Notice
 from gcode.flow import jumps, owords, subprograms
 from gcode.flow.call_stack import Level
 from gcode.flow.evaluation import evaluated
-from gcode.flow.leader import leader_end
 from gcode.flow.recovery import recovered
 from gcode.flow.requests import CallRequest, StateRequest
 from gcode.flow.session import Session
 from gcode.flow.step import step
 from gcode.flow.system_variables import SystemVariables
+from gcode.flow.tape_leader import leader_end
 from gcode.language.block_parser import parse_blocks
 from gcode.language.blocks import OWord, ParsedBlock
 from gcode.language.program import Program, Spot

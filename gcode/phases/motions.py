@@ -10,7 +10,7 @@ from gcode.control.command import Command
 from gcode.control.state import AXES, State
 from gcode.events import LinearMotion, Point
 from gcode.phases.arcs import arc
-from gcode.phases.canned_cycles import drill
+from gcode.phases.drilling import drill
 from gcode.phases.end_points import extra_end, moved_to, programmed_end, require_axes, settled
 from gcode.phases.modes import Action, Result
 from gcode.phases.polar_words import POLAR_LETTERS, as_axis_words

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from twin.comparison.align import FAR_RIVALS, Delay, better_axes, find_delay
+from twin.comparison.delay import FAR_RIVALS, Delay, better_axes, find_delay
 from twin.comparison.run_forces import RunForces
 from twin.errors import CompareError
 from twin.measured.log import AXES, ForceLog, Gap

@@ -11,7 +11,7 @@ import numpy as np
 
 from twin.arrays import FloatArray, frozen
 from twin.comparison import checks
-from twin.comparison.align import Delay, find_delay
+from twin.comparison.delay import Delay, find_delay
 from twin.comparison.harmonics import Line, lines
 from twin.comparison.metrics import AxisErrors, axis_errors
 from twin.comparison.phase import best_shift

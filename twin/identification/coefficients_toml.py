@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from twin.errors import IdentifyError
-from twin.identification.estimate import CONFIDENCE
+from twin.identification.fit.least_squares import CONFIDENCE
 from twin.identification.models.straight import NAMES
 from twin.identification.result import Identified
 from twin.settings.toml_text import toml_text

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.identification.cuts.cuts_file import Cuts
 from twin.identification.cuts.measure import SPEED_DOUBT
-from twin.identification.estimate import Estimate
+from twin.identification.fit.least_squares import Estimate
 from twin.identification.models.straight import NAMES
 from twin.identification.result import CutResult
 

@@ -9,20 +9,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.comparison.align import find_delay
+from twin.comparison.delay import find_delay
 from twin.errors import CompareError, IdentifyError, MeasuredError
 from twin.identification.cuts.axes_hint import other_axes
 from twin.identification.cuts.cuts_file import Cut, Cuts
-from twin.identification.cuts.fit import Method
+from twin.identification.cuts.fit_settings import Method
 from twin.identification.cuts.measure import Measured, given_mean, log_of, measure, straight_window
 from twin.identification.doubts import LEAST_FIT, doubts
-from twin.identification.estimate import Estimate, fixed_values
-from twin.identification.means import START, equations, fit_means, search_means
+from twin.identification.fit.least_squares import Estimate, fixed_values
+from twin.identification.fit.means import START, equations, fit_means, search_means
+from twin.identification.fit.waveform import Waveforms, fit_waveforms, measured_harmonics
 from twin.identification.models.job_model import JobRun, replay_units
 from twin.identification.models.model import Model, pass_model
 from twin.identification.models.straight import reach_mm
 from twin.identification.result import CutResult, Identified, Runout
-from twin.identification.waveform import Waveforms, fit_waveforms, measured_harmonics
 from twin.measured.log import ForceLog
 from twin.measured.steady import find_cut
 from twin.measured.uniform import uniform

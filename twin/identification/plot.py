@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from twin.identification.estimate import CONFIDENCE
+from twin.identification.fit.least_squares import CONFIDENCE
 from twin.identification.models.straight import NAMES
 from twin.identification.result import CutResult, Identified
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.identification.cuts.fit import Method
+from twin.identification.cuts.fit_settings import Method
 from twin.identification.cuts.measure import Measured
-from twin.identification.estimate import Estimate
-from twin.identification.harmonics import ComplexArray, to_waveform
+from twin.identification.fit.harmonics import ComplexArray, to_waveform
+from twin.identification.fit.least_squares import Estimate
 from twin.identification.models.straight import NAMES
 
 

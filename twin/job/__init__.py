@@ -3,8 +3,7 @@
 `load_job` reads one and reports every mistake in it at once, as a `twin.errors.JobError`.
 """
 
-from twin.job.load import job_from_dict, load_job
-from twin.job.model import (
+from twin.job.job_file import (
     Box,
     Cutting,
     Cylinder,
@@ -19,6 +18,7 @@ from twin.job.model import (
     Tool,
     job_schema,
 )
+from twin.job.load import job_from_dict, load_job
 
 __all__ = [
     "Box",

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from twin.errors import JobError
-from twin.job.model import Job, JobFile
+from twin.job.job_file import Job, JobFile
 from twin.job.rules import RULES
 from twin.settings.facts import Facts
 from twin.settings.problems import Problem, problems_of

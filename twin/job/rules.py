@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from twin.job.facts import tools_of
-from twin.job.model import STOCKS
+from twin.job.job_file import STOCKS
 from twin.job.tool_rules import TOOL_RULES
 from twin.settings.facts import Facts
 from twin.settings.problems import Problem, wrong

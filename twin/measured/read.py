@@ -11,7 +11,7 @@ from twin.errors import MeasuredError
 from twin.measured.formats.table import Table
 from twin.measured.log import RawLog
 from twin.measured.settings import AS_IN_FILE, LogReading
-from twin.measured.timing import raw_log
+from twin.measured.time_column import raw_log
 
 _MCAP_MAGIC = b"\x89MCAP"
 _PARQUET_MAGIC = b"PAR1"

@@ -12,7 +12,7 @@ from twin.cam.path.toolpath import ToolPath
 from twin.cam.surface.drop_cutter import DropCutter
 from twin.cam.surface.surface import Surface
 from twin.errors import StockError
-from twin.job.model import Tool
+from twin.job.job_file import Tool
 from twin.tools.shape import tool_shape
 from twin.workpiece.from_mesh import Solid
 

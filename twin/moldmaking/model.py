@@ -10,7 +10,7 @@ from pydantic import Field, Strict, model_validator
 
 from twin.cam.passes.roughing import StageFeeds
 from twin.cam.path.machining_time import Dynamics
-from twin.job.model import Box, Tool
+from twin.job.job_file import Box, Tool
 from twin.settings.table import FilePath, Key, Point, Table
 
 

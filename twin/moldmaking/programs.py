@@ -8,7 +8,7 @@ from typing import Any
 
 from twin.cam.path.to_nc import NcOptions, Operation, write_nc
 from twin.errors import ToolPathError
-from twin.job.model import Tool
+from twin.job.job_file import Tool
 from twin.moldmaking.model import MoldJob
 from twin.moldmaking.stages import MoldPlan, Stage, StageResult
 from twin.planning.output_files import refuse_existing

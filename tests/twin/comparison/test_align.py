@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.compared import log_of, run
 
-from twin.comparison.align import better_axes, find_delay
+from twin.comparison.delay import better_axes, find_delay
 from twin.comparison.phase import best_shift
 from twin.errors import CompareError
 

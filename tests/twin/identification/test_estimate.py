@@ -9,7 +9,7 @@ import pytest
 from support.edge_integral import BALL_CUTS, SOME, Pass
 
 from twin.identification.cuts.load import cuts_from_dict
-from twin.identification.estimate import fit_linear, fixed_values
+from twin.identification.fit.least_squares import fit_linear, fixed_values
 from twin.identification.models.model import pass_model
 from twin.identification.models.straight import NAMES
 

@@ -14,7 +14,7 @@ from support.job_files import job_folder
 
 from twin.errors import IdentifyError, JobError
 from twin.identification.cuts.load import cuts_from_dict
-from twin.identification.harmonics import to_waveform
+from twin.identification.fit.harmonics import to_waveform
 from twin.identification.identify import identify
 from twin.identification.models.job_model import JobRun, replay_units
 from twin.identification.models.model import pass_model

@@ -12,10 +12,10 @@ from support.cut_logs import QUARTER_TURN, write_log
 from support.edge_integral import SOME, Pass, log_rows
 
 from twin.errors import IdentifyError
-from twin.identification.cuts.fit import Fit
+from twin.identification.cuts.fit_settings import Fit
 from twin.identification.cuts.load import cuts_from_dict
 from twin.identification.cuts.measure import harmonic_count
-from twin.identification.harmonics import find_speed, of_samples, of_waveform, to_waveform
+from twin.identification.fit.harmonics import find_speed, of_samples, of_waveform, to_waveform
 from twin.identification.identify import Prepared, identify, prepare
 from twin.measured.steady import find_cut, steady_part
 

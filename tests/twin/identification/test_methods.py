@@ -14,7 +14,7 @@ from support.edge_integral import BALL_CUTS, BULL_CUTS, SOME, Pass
 from twin.errors import IdentifyError
 from twin.identification.cuts.load import cuts_from_dict
 from twin.identification.cuts.measure import Measured
-from twin.identification.harmonics import of_waveform
+from twin.identification.fit.harmonics import of_waveform
 from twin.identification.identify import Prepared, identify, identify_prepared, prepare
 
 FLAT_CUTS = tuple(

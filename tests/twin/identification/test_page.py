@@ -15,7 +15,7 @@ import pytest
 from support.edge_integral import BALL_CUTS
 
 from twin.identification.cuts.cuts_file import Cut, CutsFile
-from twin.identification.cuts.fit import Fit
+from twin.identification.cuts.fit_settings import Fit
 from twin.identification.cuts.load import cuts_from_dict
 from twin.identification.models.model import pass_model
 

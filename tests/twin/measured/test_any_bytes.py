@@ -18,7 +18,7 @@ from twin.measured.formats.text import parse_text
 from twin.measured.log import RawLog
 from twin.measured.read import read_log
 from twin.measured.settings import LogReading
-from twin.measured.timing import raw_log
+from twin.measured.time_column import raw_log
 
 CHARACTERS = st.sampled_from(list("0123456789.,;:\t -+eE#%\"'[]()/abcFxyztNs\n\n\n"))
 

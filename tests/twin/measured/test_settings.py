@@ -12,7 +12,7 @@ from twin.cli.commands.compare import compare
 from twin.comparison.batch import BatchRow
 from twin.errors import SettingsError
 from twin.identification.cuts.cuts_file import Cut, Shared
-from twin.job.model import Measured
+from twin.job.job_file import Measured
 from twin.measured.settings import CompareSettings, LogCorrections, LogReading
 from twin.settings.check import checked
 

@@ -70,7 +70,7 @@ def compare(
 
     Every correction is printed and stored; only the delay is searched unless it is given.
     """
-    from twin.cli.commands.comparing import Outputs, run_batch, run_one
+    from twin.cli.commands.compare_work import Outputs, run_batch, run_one
 
     options = {**windows, **reading, **corrections}
     outputs = Outputs(report=report, as_json=as_json, view=view, rrd=rrd, mcap=mcap, table=out)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from twin.cli.options import options_from
-from twin.identification.cuts.fit import Fit
+from twin.identification.cuts.fit_settings import Fit
 
 if TYPE_CHECKING:
     from twin.identification.cuts.cuts_file import Cuts

@@ -11,7 +11,7 @@ import typer
 from twin.cli import exit_codes
 
 if TYPE_CHECKING:
-    from twin.cli.commands.replaying import Outcome
+    from twin.cli.commands.replay_work import Outcome
 
 
 class Engine(StrEnum):
@@ -58,7 +58,7 @@ def replay(
     Missing folders of outputs are created. Ctrl-C stops the replay; its outputs are complete up to there. A second
     Ctrl-C discards them. A replay that ends with an error leaves no outputs.
     """
-    from twin.cli.commands.replaying import replay_job
+    from twin.cli.commands.replay_work import replay_job
     from twin.cli.show.progress import progress
     from twin.job import load_job
     from twin.sinks.outputs import opened

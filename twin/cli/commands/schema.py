@@ -24,7 +24,7 @@ def _schema(file: File) -> dict[str, Any]:
     from twin.identification.cuts.cuts_file import CutsFile
     from twin.moldmaking.model import MoldFile
     from twin.planning.settings import PathSettings, ReachSettings
-    from twin.settings.schema import toml_schema
+    from twin.settings.json_schema import toml_schema
     from twin.verification.settings import VerifySettings
 
     if file == "job":

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.identification.cuts.measure import Measured
-from twin.identification.estimate import fit_linear, fixed_values
+from twin.identification.fit.least_squares import fit_linear, fixed_values
 from twin.identification.models.model import Model
 
 _AXES = "xyz"

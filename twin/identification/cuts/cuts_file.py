@@ -7,8 +7,8 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, Strict
 
-from twin.identification.cuts.fit import Fit
-from twin.job.model import Tool
+from twin.identification.cuts.fit_settings import Fit
+from twin.job.job_file import Tool
 from twin.measured.settings import LogReading
 from twin.settings.table import FilePath, Key, Point, Table
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.errors import IdentifyError, MeasuredError
 from twin.identification.cuts.cuts_file import Cut
-from twin.identification.cuts.fit import Fit
-from twin.identification.harmonics import SPEED_RANGE, ComplexArray, find_speed, of_samples
+from twin.identification.cuts.fit_settings import Fit
+from twin.identification.fit.harmonics import SPEED_RANGE, ComplexArray, find_speed, of_samples
 from twin.measured.axes import aliases
 from twin.measured.forces import read_forces
 from twin.measured.log import AXES, ForceLog

@@ -11,8 +11,8 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.comparison.run_forces import RunForces
 from twin.errors import IdentifyError
-from twin.identification.harmonics import ComplexArray, find_speed
-from twin.identification.means import START
+from twin.identification.fit.harmonics import ComplexArray, find_speed
+from twin.identification.fit.means import START
 from twin.identification.models.straight import NAMES, unit_coefficients
 from twin.job import Cutting, Job, load_job
 from twin.record import RunHeader, Step

@@ -11,7 +11,7 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.errors import CutsError, ToolError
 from twin.identification.cuts.cuts_file import Cut, CutTool
-from twin.identification.harmonics import ComplexArray, of_waveform
+from twin.identification.fit.harmonics import ComplexArray, of_waveform
 from twin.identification.models.straight import ROWS, StraightPass, mean_matrix, response, strip_of
 from twin.tools.shape import ToolShape, tool_shape
 
@@ -35,7 +35,7 @@ class Model(Protocol):
         """Mean force on the tool for unit coefficients, shape (3, 6)."""
 
     def harmonics(self, count: int, runout_mm: FloatArray | None = None) -> ComplexArray:
-        """Coefficients of the force's waveform, see `twin.identification.harmonics`, shape (count + 1, 3, 6).
+        """Coefficients of the force's waveform, see `twin.identification.fit.harmonics`, shape (count + 1, 3, 6).
 
         Args:
             runout_mm: shape (2,), offset of the cutter's axis along and across the direction of the tip of tooth 0

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy import optimize, stats
 
 from twin.arrays import FloatArray
-from twin.identification.cuts.fit import Name
+from twin.identification.cuts.fit_settings import Name
 from twin.identification.models.straight import NAMES
 
 #: A singular value below this part of the largest, columns scaled to length 1, is none.

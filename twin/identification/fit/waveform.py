@@ -17,9 +17,9 @@ from scipy import optimize
 
 from twin.arrays import FloatArray
 from twin.identification.cuts.measure import Measured
-from twin.identification.estimate import Estimate, fit_linear, from_covariance, quantile
-from twin.identification.harmonics import ComplexArray
-from twin.identification.means import START
+from twin.identification.fit.harmonics import ComplexArray
+from twin.identification.fit.least_squares import Estimate, fit_linear, from_covariance, quantile
+from twin.identification.fit.means import START
 from twin.identification.models.model import Model
 from twin.identification.models.straight import NAMES
 from twin.identification.result import Runout
@@ -43,7 +43,7 @@ class Waveforms:
 
     Attributes:
         angle_rad: shape (cuts,), phase where it is given, NaN where it is to be found.
-        fixed: shape (6,), see `twin.identification.estimate.fixed_values`.
+        fixed: shape (6,), see `twin.identification.fit.least_squares.fixed_values`.
         sector_rad: directions of runout that can be distinguished where no phase is given: one pitch if it is constant,
             for any tooth may be called the first; else a full turn.
     """

@@ -15,7 +15,7 @@ from twin.errors import JobError
 from twin.measured.settings import CompareSettings, LogFile
 from twin.settings.check import checked
 from twin.settings.force_on import ForceOn
-from twin.settings.schema import toml_schema
+from twin.settings.json_schema import toml_schema
 from twin.settings.table import FilePath, Key, Point, Table
 
 #: The keys of a stock, of which one is given.

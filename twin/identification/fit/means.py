@@ -9,9 +9,9 @@ import numpy as np
 from scipy import optimize
 
 from twin.arrays import FloatArray
-from twin.identification.cuts.fit import Fit, Name
+from twin.identification.cuts.fit_settings import Fit, Name
 from twin.identification.cuts.measure import Measured
-from twin.identification.estimate import Estimate, fit_linear, fixed_values
+from twin.identification.fit.least_squares import Estimate, fit_linear, fixed_values
 from twin.identification.models.model import Model
 from twin.identification.models.straight import NAMES
 

@@ -1,0 +1,1 @@
+"""Fitting coefficients: linear least squares, mean forces, waveforms with their harmonics."""
