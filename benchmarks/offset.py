@@ -25,7 +25,7 @@ import numpy as np
 from numba import njit
 
 from benchmarks.report import report
-from twin.cam.reach.reach import tool_reach
+from twin.cam.reach.tool_reach import tool_reach
 from twin.cam.slices.cl_lines import Profiles, cl_heights, cl_lines
 from twin.cam.slices.offset import inflate
 from twin.cam.slices.polylines import Samples

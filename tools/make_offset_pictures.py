@@ -15,7 +15,7 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 
 from twin.arrays import FloatArray
-from twin.cam.reach.reach import tool_reach
+from twin.cam.reach.tool_reach import tool_reach
 from twin.cam.slices.offset import inflate, inflate_individually
 from twin.cam.slices.sections import SlicedPart, slice_part
 from twin.cam.slices.structuring_element import StructuringElement

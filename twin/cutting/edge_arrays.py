@@ -36,9 +36,9 @@ class Flutes(NamedTuple):
     Attributes:
         angle: shape (teeth, elements), angle of each element behind the tip of tooth 0, rad.
         feed_part: shape (teeth, backs), fraction of a revolution since the tooth 1, 2, ... before passed.
-        farther_out: shape (teeth, backs, elements), how much farther out than on that tooth an element is, mm.
+        runout_step_mm: shape (teeth, backs, elements), how much farther out than on that tooth an element is by runout, mm.
     """
 
     angle: FloatArray
     feed_part: FloatArray
-    farther_out: FloatArray
+    runout_step_mm: FloatArray

@@ -55,15 +55,15 @@ def normal_along_feed(across: float, along: float, sin_k: float, cos_k: float) -
 
 
 @njit
-def uncut_chip_thickness(feed_per_tooth: float, n_dot_f: float, farther_out: float) -> float:
+def uncut_chip_thickness(feed_per_tooth: float, n_dot_f: float, runout_step_mm: float) -> float:
     """Uncut chip thickness h = s_t (n . f) in mm (tri-slice paper, eq. 3); not above 0 where there is no chip.
 
     Args:
         feed_per_tooth: s_t, mm.
         n_dot_f: see `normal_along_feed`; plunges and ramps included.
-        farther_out: how much farther out along the normal than the earlier tooth this one is, by runout, mm.
+        runout_step_mm: how much farther out along the normal than the earlier tooth this one is, by runout, mm.
     """
-    return feed_per_tooth * n_dot_f + farther_out
+    return feed_per_tooth * n_dot_f + runout_step_mm
 
 
 @njit

@@ -117,7 +117,7 @@ def sum_forces(
     """
     count, elements = share.shape
     teeth, backs = flutes.feed_part.shape
-    angle, feed_part, farther_out = flutes.angle, flutes.feed_part, flutes.farther_out
+    angle, feed_part, runout_step_mm = flutes.angle, flutes.feed_part, flutes.runout_step_mm
     cos_row, sin_row = rows.cos, rows.sin
     cos_kappa, sin_kappa, radius, length = edges.cos_kappa, edges.sin_kappa, edges.radius, edges.length
     samples = min(len(out), step.period)
@@ -144,7 +144,7 @@ def sum_forces(
                     chip = math.inf
                     for back in range(backs):
                         feed_per_tooth = feed_part[m, back] * step.feed_per_rev
-                        out_by = farther_out[m, back, i] * sin_k
+                        out_by = runout_step_mm[m, back, i] * sin_k
                         chip = min(chip, uncut_chip_thickness(feed_per_tooth, n_dot_f, out_by))
                     if chip > step.least_chip:
                         force = edge_force(k, chip, engaged * length[i])

@@ -100,11 +100,11 @@ def _flutes(edges: CuttingEdges, backs: int) -> Flutes:
     """Flutes with the material left by as many earlier teeth: feed since they passed, and runout between them."""
     angle = edges.pitch_rad[:, None] + edges.lag_rad[None, :]
     radial = edges.runout_mm * np.cos(edges.runout_rad + angle)
-    part, farther_out = np.empty((edges.teeth, backs)), np.empty((edges.teeth, backs, len(edges.z_mm)))
+    part, runout_step_mm = np.empty((edges.teeth, backs)), np.empty((edges.teeth, backs, len(edges.z_mm)))
     for m in range(edges.teeth):
         for b in range(backs):
             other = m - b - 1
             gap = edges.pitch_rad[m] - edges.pitch_rad[other] + (2.0 * math.pi if other < 0 else 0.0)
             part[m, b] = gap / (2.0 * math.pi)
-            farther_out[m, b] = radial[m] - radial[other]
-    return Flutes(angle, part, farther_out)
+            runout_step_mm[m, b] = radial[m] - radial[other]
+    return Flutes(angle, part, runout_step_mm)

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from twin.cam.reach.largest_ball import largest_ball_mm
-from twin.cam.reach.reach import Reach, thin_bound_mm, tool_reach
+from twin.cam.reach.tool_reach import Reach, thin_bound_mm, tool_reach
 from twin.cam.reach.uncut_mesh import uncut_mesh
 from twin.cam.slices.sections import SlicedPart, slice_part
 from twin.cam.slices.structuring_element import StructuringElement

@@ -18,7 +18,7 @@ from twin.cam.passes.contour import ContourOptions, OutlineLinkPlanner, contour_
 from twin.cam.passes.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
 from twin.cam.path.arc_fit import FitOptions, Side, fit_path
 from twin.cam.path.linking import LinkOptions, LinkPlanner, Pass, link
-from twin.cam.path.surface_links import SurfaceLinkPlanner
+from twin.cam.path.surface_link_planner import SurfaceLinkPlanner
 from twin.cam.path.to_nc import describe
 from twin.cam.path.toolpath import ToolPath
 from twin.cam.slices.cl_lines import Profiles, cl_lines

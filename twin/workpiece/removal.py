@@ -1,4 +1,7 @@
-"""Material removal: sweeps subtracted from the workpiece's slices in three directions."""
+"""Material removal: sweeps subtracted from the workpiece's slices in three directions.
+
+The polygon arithmetic is in `twin.geometry.column_cells.cut_kernels`.
+"""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.record import WorkpiecePatch
-from twin.workpiece.contour import MARGIN, SurfacePart, draw_part
+from twin.workpiece.dual_contouring import MARGIN, SurfacePart, draw_part
 from twin.workpiece.lattice import Lattice, Patch, PatchGrid
 from twin.workpiece.store import SliceStore
 

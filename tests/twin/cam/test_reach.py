@@ -13,7 +13,7 @@ from support.facets import ring_in_facets
 
 from twin.arrays import FloatArray
 from twin.cam.reach.largest_ball import largest_ball_mm
-from twin.cam.reach.reach import thin_bound_mm, tool_reach
+from twin.cam.reach.tool_reach import thin_bound_mm, tool_reach
 from twin.cam.reach.uncut_mesh import uncut_mesh
 from twin.cam.slices.sections import SlicedPart, slice_part
 from twin.cam.slices.structuring_element import StructuringElement

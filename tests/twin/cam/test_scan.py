@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.cam.passes.scan import Rows, ScanOptions, row_positions, scan_passes
-from twin.cam.slices.runs import below
+from twin.cam.slices.stretches import below
 
 LINE = np.array([(0.0, 0.0), (4.0, 0.0), (5.0, 2.0), (6.0, 0.0), (10.0, 0.0)])
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from twin.arrays import FloatArray
-from twin.cam.passes.free_area import level_free_areas
+from twin.cam.passes.level_free_areas import level_free_areas
 from twin.cam.passes.pockets import subdivided
 from twin.cam.passes.roughing import LevelLinkPlanner, contour_roughing, roughing_levels
 from twin.cam.path.machining_time import machining_time

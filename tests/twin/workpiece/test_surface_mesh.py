@@ -16,7 +16,8 @@ from twin.errors import StockError
 from twin.geometry.polygons.region import Region
 from twin.motion.sweep import Body, Sweep
 from twin.tools.shape import tool_shape
-from twin.workpiece import contour_kernels, lattice_kernels
+from twin.workpiece import dual_contouring_kernels as contour_kernels
+from twin.workpiece import lattice_kernels
 from twin.workpiece.cell_cases import edge_corners, sheet_table
 from twin.workpiece.lattice import Lattice
 from twin.workpiece.removal import Removal

@@ -22,7 +22,7 @@ from twin.cam.path.linking import LinkOptions, Pass, link
 from twin.cam.path.machining_time import Dynamics
 from twin.cam.path.toolpath import ToolPath
 from twin.cam.path.tour import LinkSpeeds, order_pieces
-from twin.cam.slices import run_kernels as kernels
+from twin.cam.slices import stretch_kernels as kernels
 from twin.cam.stock.dexel import Dexels
 from twin.cam.stock.rest import spacing_for_cusp, stock_heights
 from twin.cam.surface.drop_cutter import DropCutter

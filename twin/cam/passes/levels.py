@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cam.passes.free_area import CHORD_MM
+from twin.cam.passes.level_free_areas import CHORD_MM
 from twin.cam.passes.pockets import subdivided
-from twin.cam.slices import run_kernels as kernels
+from twin.cam.slices import stretch_kernels as kernels
 from twin.cam.stock.dexel import Dexels
 from twin.cam.stock.rest import stock_heights
 from twin.cam.stock.strokes import Strokes

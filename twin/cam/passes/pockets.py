@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from twin.arrays import FloatArray, places_in_runs
-from twin.cam.passes.free_area import CHORD_MM
+from twin.cam.passes.level_free_areas import CHORD_MM
 from twin.geometry.polygons.free_area import FreeArea, a_point_of, borders, has_point, shrunk, size_of
 from twin.geometry.polygons.outline import Area, pieces
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from twin.cam.passes.free_area import level_free_areas
+from twin.cam.passes.level_free_areas import level_free_areas
 from twin.cam.passes.levels import CutOptions, cuts_of, row_layers
 from twin.cam.passes.roughing import FIT, RoughingOptions, Workspace, roughing_levels
 from twin.cam.passes.semi_finishing import LevelCuts, Report, StockLinkPlanner

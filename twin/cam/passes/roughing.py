@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cam.passes.free_area import CHORD_MM, level_free_areas
+from twin.cam.passes.level_free_areas import CHORD_MM, level_free_areas
 from twin.cam.passes.pockets import clearing_rings, in_depth, pocket_forest, subdivided
 from twin.cam.path.arc_fit import FitOptions, fit_path
 from twin.cam.path.linking import LinkOptions, Pass, link

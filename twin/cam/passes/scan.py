@@ -15,7 +15,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cam.path.linking import Pass
-from twin.cam.slices.runs import below
+from twin.cam.slices.stretches import below
 
 Direction: TypeAlias = Literal["x", "y"]
 #: The planes that rows along a direction lie in, by their normal.

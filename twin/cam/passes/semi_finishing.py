@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cam.passes.free_area import level_free_areas
+from twin.cam.passes.level_free_areas import level_free_areas
 from twin.cam.passes.levels import Cut, CutOptions, cuts_of, ring_layers
 from twin.cam.passes.roughing import FIT, LevelLinkPlanner, RoughingOptions, StageFeeds, Workspace, roughing_levels
 from twin.cam.path.arc_fit import fit_path

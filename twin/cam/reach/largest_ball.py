@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from twin.cam.reach.reach import Reach, tool_reach
+from twin.cam.reach.tool_reach import Reach, tool_reach
 from twin.cam.slices.sections import SlicedPart
 from twin.cam.slices.structuring_element import StructuringElement
 from twin.errors import ToolError
@@ -26,7 +26,7 @@ def largest_ball_mm(
     """Radius of the largest ball that leaves nothing that the slices can resolve, by bisection.
 
     Args:
-        thin_mm: least thickness that counts, see `twin.cam.reach.reach.tool_reach`.
+        thin_mm: least thickness that counts, see `twin.cam.reach.tool_reach.tool_reach`.
         report: called with every radius that was tried and the material left by the ball.
 
     Returns:

@@ -20,7 +20,7 @@ from twin.workpiece.store import PLANE_AXES
 
 if TYPE_CHECKING:
     from twin.arrays import FloatArray
-    from twin.cam.reach.reach import Reach
+    from twin.cam.reach.tool_reach import Reach
     from twin.cam.reach.uncut_regions import UncutRegion
     from twin.cam.slices.sections import SlicedPart
     from twin.geometry.polygons.region import Region

@@ -16,7 +16,7 @@ from twin.cli.show.words import plural
 
 if TYPE_CHECKING:
     from twin.arrays import FloatArray
-    from twin.cam.reach.reach import Reach
+    from twin.cam.reach.tool_reach import Reach
     from twin.cam.reach.uncut_regions import UncutRegion
     from twin.planning.part_reach import PartReach
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cam.path.toolpath import MoveKind, ToolPath
-from twin.cam.reach.reach import Reach
+from twin.cam.reach.tool_reach import Reach
 from twin.cam.reach.uncut_mesh import uncut_mesh
 from twin.planning.part_reach import PartReach, tool_name
 from twin.sinks.rerun.still import Colors, Still, StillLines, StillMesh, StillPoints

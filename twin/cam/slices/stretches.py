@@ -1,4 +1,4 @@
-"""Runs of a polyline below a height."""
+"""Stretches of a polyline below a height."""
 
 from __future__ import annotations
 

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry.polygons.lines import LineEnds
-from twin.workpiece import contour_kernels, lattice_kernels
+from twin.workpiece import dual_contouring_kernels as contour_kernels
+from twin.workpiece import lattice_kernels
 from twin.workpiece.cell_cases import OTHER_AXES, sheet_table
 from twin.workpiece.lattice import Patch, PatchGrid
 from twin.workpiece.store import PLANE_AXES, SliceStore
