@@ -1,4 +1,4 @@
-"""The functions of `import twin` (all its names are listed in `twin/__init__.py`): thin faces over simulation, planning, verification, comparison, identification.
+"""The functions of `import twin`, thin faces over the rooms that do the work; `twin/__init__.py` lists all names.
 
 Units are mm, s, N, N·m, W and rad throughout. A mistake of the user's is a `twin.TwinError` (or a
 `gcode.GcodeError` for the NC program) whose message names file, position, value and what was expected.

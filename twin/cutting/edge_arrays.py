@@ -36,7 +36,8 @@ class Flutes(NamedTuple):
     Attributes:
         angle: shape (teeth, elements), angle of each element behind the tip of tooth 0, rad.
         feed_part: shape (teeth, backs), fraction of a revolution since the tooth 1, 2, ... before passed.
-        runout_step_mm: shape (teeth, backs, elements), how much farther out than on that tooth an element is by runout, mm.
+        runout_step_mm: shape (teeth, backs, elements), how much farther out by runout than on that tooth an
+            element is, mm.
     """
 
     angle: FloatArray
