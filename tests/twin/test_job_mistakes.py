@@ -31,15 +31,15 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"program__tool": 3}, "program.tool = 3: expected 0 or the number of a tool: 1, 7"),
     (
         {"machine__rapid_mm_min": "fast"},
-        'machine.rapid_mm_min = "fast": expected a number above 0 (speed along the path of rapid motions, mm/min)',
+        'machine.rapid_mm_min = "fast": expected a number above 0 (rapid traverse rate along the path, mm/min)',
     ),
     (
         {"machine__rapid_mm_min": True},
-        "machine.rapid_mm_min = true: expected a number above 0 (speed along the path of rapid motions, mm/min)",
+        "machine.rapid_mm_min = true: expected a number above 0 (rapid traverse rate along the path, mm/min)",
     ),
     (
         {"machine__rapid_mm_min": float("nan")},
-        "machine.rapid_mm_min = nan: expected a number above 0 (speed along the path of rapid motions, mm/min)",
+        "machine.rapid_mm_min = nan: expected a number above 0 (rapid traverse rate along the path, mm/min)",
     ),
     (
         {"machine__offsets__G60": [0, 0, 0]},
@@ -62,7 +62,8 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ),
     (
         {"measured": {"columns": 3}},
-        "measured.columns = 3: expected a list of texts (names of all columns, with units, e.g. t_s,Fx_N,Fy_N,Fz_N)",
+        "measured.columns = 3: expected a list of texts (names of all columns in order, with units, e.g. "
+        "t_s,Fx_N,Fy_N,Fz_N)",
     ),
     (
         {"measured": {"lag_s": "soon"}},
@@ -83,11 +84,11 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
         "stock.cylinder_mm.max = -1: expected above stock.cylinder_mm.min = 0",
     ),
     ({"tools": []}, "tools = []: expected at least one table [[tools]]"),
-    ({"tools__1__number": 1}, "tools[1].number = 1: expected a number of its own, tools[0] has it already"),
+    ({"tools__1__number": 1}, "tools[1].number = 1: expected a unique number, tools[0] already has it"),
     (
         {"tools__0__diameter_mm": -8.0},
-        "tools[0].diameter_mm (tool 1) = -8.0: expected a number above 0 (diameter of the cutting part; of a taper "
-        "tool's tip)",
+        "tools[0].diameter_mm (tool 1) = -8.0: expected a number above 0 (diameter of the cutting part; for a taper "
+        "tool, diameter at the tip)",
     ),
     (
         {"tools__0__teeth": 2.0},
@@ -99,8 +100,8 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ),
     (
         {"tools__0__flute_length_mm": NOTHING},
-        "tools[0].flute_length_mm (tool 1): missing; expected a number above 0 (height of the cutting part above the "
-        "tip)",
+        "tools[0].flute_length_mm (tool 1): missing; expected a number above 0 (length of the cutting part, "
+        "measured from the tip)",
     ),
     ({"tools__0__helix": 30}, "tools[0].helix (tool 1): unknown key; did you mean helix_deg?"),
     (
@@ -135,7 +136,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"tools__1__runout_mm": 8}, "tools[1].runout_mm (tool 7) = 8: expected below 8, half the diameter"),
     (
         {"tools__1__holder": 3},
-        "tools[1].holder (tool 7) = 3: expected a list of tables (holder above the shank, upwards: list of "
+        "tools[1].holder (tool 7) = 3: expected a list of tables (holder above the shank, from the bottom up: list of "
         "{ diameter_mm, length_mm })",
     ),
     (
@@ -145,12 +146,12 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"cutting__Kae": NOTHING}, "cutting.Kae: missing; expected a number (axial, per edge length, N/mm)"),
     (
         {"cutting__source": "  "},
-        'cutting.source = "  ": expected text that is not empty (source of the coefficients)',
+        'cutting.source = "  ": expected text that is not empty (source of the coefficients, e.g. a paper or a test)',
     ),
     (
         {"cutting__convention": "helical"},
-        'cutting.convention = "helical": expected one of "meridian" (edge length of the edge terms: along the '
-        "tool's meridian)",
+        'cutting.convention = "helical": expected one of "meridian" (edge length that Kte, Kre and Kae refer to: '
+        "along the tool's profile (meridian), not the helix)",
     ),
     ({"simulation__slice_pich_mm": 0.1}, "simulation.slice_pich_mm: unknown key; did you mean slice_pitch_mm?"),
     (
@@ -168,8 +169,8 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"output__mcap": "run.bag"}, 'output.mcap = "run.bag": expected a file name that ends in .mcap'),
     (
         {"output__force_on": "part"},
-        'output.force_on = "part": expected one of "tool", "workpiece" (body that the forces in summary and '
-        "export act on)",
+        'output.force_on = "part": expected one of "tool", "workpiece" (body on which the forces in summary and '
+        "export act)",
     ),
     ({"cuttings": {}}, "cuttings: unknown key; did you mean cutting?"),
     (

@@ -24,7 +24,7 @@ app = typer.Typer(
     name="twin",
     cls=HelpGroup,
     help="A machining digital twin: replays NC programs, removes material, predicts cutting forces.",
-    epilog="Exit codes: 0 done, 1 an error that the message names, 2 wrong use of the command line, 3 a collision "
+    epilog="Exit codes: 0 done, 1 an error, explained in the message, 2 wrong use of the command line, 3 a collision "
     "under --strict, 4 out of tolerance, 130 Ctrl-C, 141 closed pipe.",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},

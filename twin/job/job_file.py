@@ -33,39 +33,43 @@ class Program(Table):
         default="fanuc", description="control that the program is written for"
     )
     arc_centres: Literal["incremental", "absolute"] = Field(
-        default="incremental", description="I, J, K from the arc's start, or as coordinates"
+        default="incremental",
+        description="arc centre I, J, K: distance from the arc's start (incremental), or coordinates (absolute)",
     )
     block_delete: bool = Field(
         default=False, description="block delete switch: true skips the blocks that begin with /"
     )
-    units: Literal["mm", "inch"] = Field(default="mm", description="units until the program has G20 or G21")
+    units: Literal["mm", "inch"] = Field(
+        default="mm", description="units in force until the program's first G20 or G21"
+    )
     tool: int = Field(default=0, ge=0, description="tool in the spindle when the program starts, 0 for none")
     search_path: list[FilePath] = Field(
-        default_factory=list, description="folders of subprogram files, searched after the program's own folder"
+        default_factory=list, description="folders to search for subprogram files after the program's own folder"
     )
     decimal_point: Literal["calculator", "increment"] = Field(
         default="calculator",
-        description="X100 without a decimal point: 100 mm (calculator), or 100 times 0.001 mm (increment)",
+        description="X100 without a decimal point: 100 mm (calculator), or 100 increments of 0.001 mm (increment)",
     )
     compensation_startup: Literal["A", "B"] = Field(
-        default="A", description="type of start-up and cancel of cutter compensation on FANUC and Haas"
+        default="A", description="start-up and cancel type of cutter compensation on FANUC and Haas"
     )
 
 
 class Machine(Table):
     """The machine and its setup. Points are positions of the gauge point in machine coordinates."""
 
-    rapid_mm_min: float = Field(default=48000.0, gt=0.0, description="speed along the path of rapid motions, mm/min")
+    rapid_mm_min: float = Field(default=48000.0, gt=0.0, description="rapid traverse rate along the path, mm/min")
     tool_change_s: float = Field(default=0.0, ge=0.0, description="time of one tool change, s")
     home_mm: Annotated[Point | None, Key(unset="above the stock")] = Field(
-        default=None, description="gauge point at the reference point of G28, mm"
+        default=None, description="position of the gauge point at the G28 reference point, mm"
     )
     start_mm: Annotated[Point | None, Key(unset="the reference point")] = Field(
-        default=None, description="gauge point when the program starts, mm"
+        default=None, description="position of the gauge point when the program starts, mm"
     )
     offsets: dict[WorkOffset, Point] = Field(
         default={"G54": (0.0, 0.0, 0.0)},
-        description="work offsets, G54 to G59 and G59.1 to G59.3: positions of the work zeros, mm; none but these",
+        description="work offsets, G54 to G59 and G59.1 to G59.3: positions of the work zeros, mm; only "
+        "those listed can be used",
     )
 
 
@@ -101,8 +105,8 @@ class Stock(Table):
         default=None, description="STL file of a closed solid, relative to the job file's folder"
     )
     stl_scale: float = Field(default=1.0, gt=0.0, description="length of one unit of the STL file, mm; 25.4 for inches")
-    offset_mm: Point = Field(default=(0.0, 0.0, 0.0), description="added to the STL file's points after scaling, mm")
-    wcs: WorkOffset = Field("G54", description="work offset that the stock's coordinates are given in")
+    offset_mm: Point = Field(default=(0.0, 0.0, 0.0), description="shift of the STL file's points after scaling, mm")
+    wcs: WorkOffset = Field("G54", description="work offset in which the stock's coordinates are given")
 
 
 class RigidPart(Table):
@@ -121,9 +125,10 @@ class Cutting(Table):
     Kre: float = Field(description="radial, per edge length, N/mm")
     Kac: float = Field(description="axial, per chip area, N/mm2")
     Kae: float = Field(description="axial, per edge length, N/mm")
-    source: str = Field(min_length=1, pattern=r"\S", description="source of the coefficients")
+    source: str = Field(min_length=1, pattern=r"\S", description="source of the coefficients, e.g. a paper or a test")
     convention: Literal["meridian"] = Field(
-        default="meridian", description="edge length of the edge terms: along the tool's meridian"
+        default="meridian",
+        description="edge length that Kte, Kre and Kae refer to: along the tool's profile (meridian), not the helix",
     )
     standard_errors: Annotated[SixNumbers | None, Key(unset="none")] = Field(
         default=None, description="standard errors of Ktc, Kte, Krc, Kre, Kac, Kae; archived with the run, not used"
@@ -138,30 +143,41 @@ class Tool(Table):
 
     number: int = Field(ge=1, description="tool number, the T word")
     name: str = Field(default="", description="human-readable name")
-    kind: Literal["flat", "ball", "bull", "taper"] = Field(description="shape of the cutting part")
-    diameter_mm: float = Field(gt=0.0, description="diameter of the cutting part; of a taper tool's tip")
+    kind: Literal["flat", "ball", "bull", "taper"] = Field(
+        description="shape of the cutting part: flat end mill, ball nose, bull nose or tapered"
+    )
+    diameter_mm: float = Field(
+        gt=0.0, description="diameter of the cutting part; for a taper tool, diameter at the tip"
+    )
     teeth: int = Field(ge=1, le=100, description="number of flutes")
     helix_deg: float = Field(default=0.0, gt=-90.0, lt=90.0, description="helix angle, right-hand positive")
-    flute_length_mm: float = Field(gt=0.0, description="height of the cutting part above the tip")
+    flute_length_mm: float = Field(gt=0.0, description="length of the cutting part, measured from the tip")
     corner_radius_mm: float | None = Field(
         default=None, gt=0.0, description="corner radius: required for bull, optional for taper, not for other kinds"
     )
     taper_deg: float | None = Field(
-        default=None, gt=0.0, lt=90.0, description="half angle: required for taper, not for other kinds"
+        default=None, gt=0.0, lt=90.0, description="half angle of the taper: required for taper, not for other kinds"
     )
     length_mm: float = Field(
-        default=0.0, ge=0.0, description="gauge length: from the tip to the gauge point, the H entry"
+        default=0.0, ge=0.0, description="gauge length from tip to gauge point; it is also the tool length offset (H)"
     )
     pitch_deg: Annotated[Annotated[tuple[float, ...], Strict(False)] | None, Key(unset="constant pitch")] = Field(
-        default=None, description="variable pitch: angles from each tooth to the next, one per tooth, 360 in total"
+        default=None, description="variable pitch: angle from each tooth to the next, one per tooth, 360 in total"
     )
-    runout_mm: float = Field(default=0.0, ge=0.0, description="distance of the cutter's axis from the spindle's, mm")
-    runout_angle_deg: float = Field(default=0.0, description="direction of the runout, from the tip of the first tooth")
+    runout_mm: float = Field(
+        default=0.0,
+        ge=0.0,
+        description="radial runout: distance from the spindle axis to the cutter axis, half the indicator reading, mm",
+    )
+    runout_angle_deg: float = Field(
+        default=0.0,
+        description="direction of the runout, measured from the tip of the first tooth in the direction of rotation",
+    )
     shank: Annotated[RigidPart | None, Key(unset="none")] = Field(
         default=None, description="shank above the flutes: { diameter_mm, length_mm }"
     )
     holder: Annotated[tuple[RigidPart, ...], Strict(False), Key(unset="none")] = Field(
-        default=(), description="holder above the shank, upwards: list of { diameter_mm, length_mm }"
+        default=(), description="holder above the shank, from the bottom up: list of { diameter_mm, length_mm }"
     )
     cutting: Annotated[Cutting | None, Key(unset="those of [cutting]")] = Field(
         default=None, description="coefficients for this tool"
@@ -174,22 +190,25 @@ class Simulation(Table):
     slice_pitch_mm: float = Field(
         default=0.1,
         gt=0.0,
-        description="distance of the slices; at most the thinnest tool's diameter",
+        description="distance between slices; at most the diameter of the thinnest tool",
     )
-    step_mm: float = Field(default=0.1, gt=0.0, description="longest step along a motion")
+    step_mm: float = Field(default=0.1, gt=0.0, description="longest step of the tool along a motion")
     angle_step_deg: float = Field(
-        default=1.0, gt=0.0, le=360.0, description="spindle angle between force samples; divides 360"
+        default=1.0, gt=0.0, le=360.0, description="spindle angle between force samples; must divide 360"
     )
-    axial_step_mm: float = Field(default=0.1, gt=0.0, description="height of a cutting edge element")
+    axial_step_mm: float = Field(
+        default=0.1, gt=0.0, description="height of a cutting edge element along the tool axis"
+    )
     engagement: Literal["majority", "any"] = Field(
         default="majority",
-        description="slices of three that must hold an edge point: two (majority), or one (any), the paper's rule",
+        description="slices that must contain an edge point, of the three nearest to it: two (majority), or one (any), "
+        "the paper's rule",
     )
     store: Literal["fast", "reference"] = Field(
-        default="fast", description="implementation of the slices: column cells (fast), or plain polygons (reference)"
+        default="fast", description="storage of the slices: column cells (fast), or plain polygons (reference, slow)"
     )
     preview_pitch_mm: Annotated[float | None, Key(unset="to suit the stock")] = Field(
-        default=None, gt=0.0, description="cell size of the drawn workpiece, mm"
+        default=None, gt=0.0, description="cell size of the workpiece as drawn, mm; no effect on results"
     )
 
 
@@ -202,7 +221,7 @@ class Output(Table):
     rrd: Annotated[FilePath | None, Key(unset="none")] = Field(
         default=None, description="rerun recording (.rrd), relative to the job file's folder"
     )
-    force_on: ForceOn = Field(default="tool", description="body that the forces in summary and export act on")
+    force_on: ForceOn = Field(default="tool", description="body on which the forces in summary and export act")
 
 
 class Measured(CompareSettings, LogFile):

@@ -76,7 +76,7 @@ def tool_numbers_differ(facts: Facts, _folder: Path) -> Iterator[Problem]:
         if tool.number is None:
             continue
         if tool.number in first:
-            expected = f"a number of its own, tools[{first[tool.number]}] has it already"
+            expected = f"a unique number, tools[{first[tool.number]}] already has it"
             yield wrong(tool.at("number"), tool.number, expected)
         first.setdefault(tool.number, index)
 

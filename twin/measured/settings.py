@@ -94,13 +94,13 @@ class LogReading(Table):
     """Reading of a log as forces on the tool in machine axes."""
 
     map: Annotated[str | None, BeforeValidator(_axis_map), Key(metavar="MAP", unset="by the column names")] = Field(
-        default=None, description="columns for the axes with their signs, e.g. x=-Fy,y=-Fx,z=Fz"
+        default=None, description="column and sign for each machine axis, e.g. x=-Fy,y=-Fx,z=Fz"
     )
-    force_on: ForceOn = Field(default="tool", description="body that the mapped force acts on")
+    force_on: ForceOn = Field(default="tool", description="body on which the mapped force acts")
     columns: Annotated[
         Annotated[tuple[str, ...], Strict(False), BeforeValidator(_names)] | None,
         Key(as_text=True, metavar="NAMES", unset="those of the file"),
-    ] = Field(default=None, description="names of all columns, with units, e.g. t_s,Fx_N,Fy_N,Fz_N")
+    ] = Field(default=None, description="names of all columns in order, with units, e.g. t_s,Fx_N,Fy_N,Fz_N")
     unit: Annotated[str | None, Key(metavar="UNIT", unset="from the column names")] = Field(
         default=None, min_length=1, description="unit of the forces: N, kN, lbf"
     )
@@ -108,22 +108,26 @@ class LogReading(Table):
         default=None, gt=0.0, description="sampling rate, Hz"
     )
     rpm: Annotated[float | None, Key(metavar="RPM", unset="none")] = Field(
-        default=None, gt=0.0, description="spindle speed that makes time of a column of the spindle angle"
+        default=None,
+        gt=0.0,
+        description="spindle speed, rpm; converts spindle angle to time in a log without a time column",
     )
     delimiter: Annotated[str | None, BeforeValidator(_delimiter), Key(metavar="CHAR", unset="detected")] = Field(
-        default=None, description="delimiter of a text file, or tab, space, comma, semicolon"
+        default=None, description="delimiter of a text file: the character, or tab, space, comma, semicolon"
     )
     decimal: Annotated[Literal[".", ","] | None, Key(unset="detected")] = Field(
         default=None, description="decimal mark of a text file"
     )
     group: Annotated[str | None, Key(metavar="NAME", unset="detected")] = Field(
-        default=None, min_length=1, description="group of a TDMS or HDF5 file, variable of MATLAB, topic of MCAP"
+        default=None,
+        min_length=1,
+        description="group to read from a TDMS or HDF5 file, variable of a MATLAB file, topic of an MCAP file",
     )
     angle_column: Annotated[str | None, Key(metavar="NAME", unset="by its name")] = Field(
-        default=None, min_length=1, description="column of the spindle angle"
+        default=None, min_length=1, description="column that holds the spindle angle"
     )
     trigger_column: Annotated[str | None, Key(metavar="NAME", unset="by its name")] = Field(
-        default=None, min_length=1, description="column of a once-per-revolution pulse"
+        default=None, min_length=1, description="column that holds a once-per-revolution pulse"
     )
 
     @property
@@ -141,31 +145,33 @@ class LogCorrections(Table):
         float | None,
         BeforeValidator(_lag),
         Key(as_text=True, metavar="auto|SECONDS", unset="found by cross-correlation"),
-    ] = Field(default=None, description="delay of the log, or auto: run time = log time - lag, s")
+    ] = Field(default=None, description="delay of the log, s, or auto: run time = log time - lag")
     lag_within_s: Annotated[float | None, Key(unset="any")] = Field(
-        default=None, gt=0.0, description="largest delay that is searched, s"
+        default=None, gt=0.0, description="largest delay to search, either sign, s"
     )
-    phase: bool = Field(default=False, description="shift each window to the measured phase of the spindle")
+    phase: bool = Field(default=False, description="shift the run in each window to match the spindle phase of the log")
     offset: Annotated[str, BeforeValidator(_offset), Key(metavar="none|air|BEGIN:END|X,Y,Z")] = Field(
         default="none",
-        description="zero of the amplifier: none, the mean in air, or over BEGIN:END of the log's clock, or X,Y,Z in N",
+        description="amplifier zero to subtract: none, mean in air, mean over BEGIN:END on the log's clock, X,Y,Z in N",
     )
-    drift: bool = Field(default=False, description="subtract a line through the air segments, offset included")
+    drift: bool = Field(
+        default=False, description="subtract a straight line fitted to the air segments; it removes the offset too"
+    )
     resample_hz: Annotated[float | None, Key(unset="the log's rate")] = Field(
-        default=None, gt=0.0, description="rate of the comparison, Hz"
+        default=None, gt=0.0, description="sampling rate of the comparison, Hz"
     )
     lowpass_hz: Annotated[float | None, Key(unset="none")] = Field(
-        default=None, gt=0.0, description="low-pass filter of log and run, Hz"
+        default=None, gt=0.0, description="cut-off frequency of a low-pass filter on log and run, Hz"
     )
     notches: Annotated[
         tuple[Annotated[str, BeforeValidator(_notch)], ...],
         Strict(False),
         BeforeValidator(_listed),
         Key(options=("--notch",), metavar="HZ[:Q]", unset="none"),
-    ] = Field(default=(), description="notch filter of log and run: HZ or HZ:QUALITY")
-    causal: bool = Field(default=False, description="filters run forwards only, not forwards and backwards")
+    ] = Field(default=(), description="notch filter on log and run: HZ or HZ:QUALITY")
+    causal: bool = Field(default=False, description="run filters forwards only, not forwards and backwards")
     filter_both: Annotated[bool, Key(options=("--filter-both/--filter-log-only",))] = Field(
-        default=True, description="filter the run like the log"
+        default=True, description="filter the run as well as the log"
     )
 
     @property
@@ -193,7 +199,7 @@ class CompareSettings(LogCorrections, LogReading):
         Strict(False),
         BeforeValidator(_listed),
         Key(options=("--window",), metavar="BEGIN:END", unset="the whole overlap"),
-    ] = Field(default=(), description="window of the comparison on the run's clock: BEGIN:END, s")
+    ] = Field(default=(), description="window to compare, on the run's clock: BEGIN:END, s")
 
     @property
     def spans(self) -> tuple[Gap, ...]:

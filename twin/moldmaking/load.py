@@ -82,7 +82,7 @@ def _tool_problems(file: MoldFile) -> Iterator[Problem]:
 
 
 def _stage_problems(file: MoldFile) -> Iterator[Problem]:
-    """Tools that are missing or too large, depths beyond the tool radius, allowances that grow, and no step-over."""
+    """Tools that are missing or too large, depths beyond the tool radius, allowances that grow, and no stepover."""
     known = {t.number: t for t in file.tools}
     last: tuple[str, float] | None = None
     for name in _STAGES:

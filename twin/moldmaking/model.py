@@ -40,7 +40,11 @@ class MoldMachine(Table):
     rapid_mm_s2: float = Field(default=5_000.0, gt=0.0, description="acceleration at rapid traverse, mm/s2")
     corner_mm: float = Field(default=0.01, gt=0.0, description="corner blending tolerance, mm")
     safe_mm: float = Field(default=10.0, gt=0.0, description="height of rapids above the stock")
-    clearance_mm: float = Field(default=1.0, gt=0.0, description="height above material where rapids down end")
+    clearance_mm: float = Field(
+        default=1.0,
+        gt=0.0,
+        description="height above the material at which a rapid down ends and the plunge feed begins",
+    )
     tool_change_s: float = Field(default=4.0, ge=0.0, description="time of one tool change, s")
 
     @property
@@ -120,10 +124,10 @@ class Finish(StageTable):
     """Finishing by rows, and by level lines on steep faces."""
 
     stepover_mm: Annotated[float | None, Key(unset="from scallop_mm")] = Field(
-        default=None, gt=0.0, description="step-over: distance between rows"
+        default=None, gt=0.0, description="stepover: distance between rows"
     )
     scallop_mm: Annotated[float | None, Key(unset="from stepover_mm")] = Field(
-        default=None, gt=0.0, description="scallop height on level faces, instead of the step-over"
+        default=None, gt=0.0, description="scallop height on level faces, instead of the stepover"
     )
     chord_mm: float = Field(default=0.005, gt=0.0, description="chord tolerance: largest deviation from the exact path")
     pitch_mm: float = Field(default=0.3, gt=0.0, description="distance of the first drop-cutter positions along a row")

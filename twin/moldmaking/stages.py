@@ -173,7 +173,7 @@ class MoldPlan:
 
     @cached_property
     def finishing_options(self) -> FinishingOptions:
-        """Options of finishing; the step-over follows from the scallop height where that is given."""
+        """Options of finishing; the stepover follows from the scallop height where that is given."""
         table = self.job.finish
         stepover = table.stepover_mm
         if stepover is None:

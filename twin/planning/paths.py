@@ -93,7 +93,7 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, progress: Pro
 
     Raises:
         MeshError, StockError, ToolError: the mesh is not a closed solid, an impossible pitch, an invalid tool text.
-        ToolPathError: a step-over or depth too large for the tool, or a safe height below the stock's top.
+        ToolPathError: a stepover or depth too large for the tool, or a safe height below the stock's top.
     """
     tool = parse_tool(settings.tool)
     _check_tool(settings, tool)
@@ -134,7 +134,7 @@ def _check_tool(settings: PathSettings, tool: ToolShape) -> None:
     """Refuse a taper tool for rows from slices, and steps that leave ridges between passes.
 
     Raises:
-        ToolPathError: one of these: a step-over above the diameter, a radial depth above the radius where an area is
+        ToolPathError: one of these: a stepover above the diameter, a radial depth above the radius where an area is
             cleared.
     """
     if settings.strategy == "scan" and tool.taper_rad > 0.0 and not settings.exact:

@@ -119,7 +119,7 @@ def plan_paths(
     Raises:
         SettingsError: wrong parameters; the message has every mistake.
         MeshError, StockError, ToolError: the mesh is not a closed solid, an impossible pitch, an invalid tool text.
-        ToolPathError: a step-over or depth too large for the tool, or a safe height below the stock's top.
+        ToolPathError: a stepover or depth too large for the tool, or a safe height below the stock's top.
 
     Example:
         >>> plan_paths("part.stl", strategy="scan", tool="ball 8", stepover_mm=0.25).write("part.nc")

@@ -22,64 +22,68 @@ class PathSettings(Table):
         default=0.02, gt=0.0, description="required accuracy; a pitch that may be too coarse for it gives a warning"
     )
     exact: Annotated[bool, Key(options=("--exact/--slices",))] = Field(
-        default=False, description="scan: rows by drop-cutter on the triangles, else from slices"
+        default=False, description="scan: rows by drop-cutter on the triangles (exact), else from slices"
     )
-    stepover_mm: float = Field(default=0.5, gt=0.0, description="scan: step-over, the distance between rows")
-    allowance_mm: float = Field(default=0.0, ge=0.0, description="allowance (stock to leave) on the part")
+    stepover_mm: float = Field(default=0.5, gt=0.0, description="scan: stepover, the distance between rows")
+    allowance_mm: float = Field(default=0.0, ge=0.0, description="allowance: stock to leave on the part")
     layers: int = Field(
-        default=1, ge=0, description="number of roughing layers; contour: 0 for as many as clear the stock"
+        default=1, ge=0, description="number of roughing layers; contour: 0 for as many as it takes to clear the stock"
     )
     axial_depth_mm: float = Field(
-        default=1.0, gt=0.0, description="axial depth of cut; scan: step-down of layers, contour: of levels"
+        default=1.0, gt=0.0, description="axial depth of cut: step-down between layers (scan) or levels (contour)"
     )
     radial_depth_mm: Annotated[float | None, Key(unset="0.4 of the diameter")] = Field(
         default=None, gt=0.0, description="contour: radial depth of cut, the distance between layers"
     )
-    direction: Literal["x", "y"] = Field(default="x", description="scan: axis that the rows run along")
+    direction: Literal["x", "y"] = Field(default="x", description="scan: axis along which the rows run")
     zigzag: Annotated[bool, Key(options=("--zigzag/--one-way",))] = Field(
-        default=True, description="scan: zigzag rows, else one-way rows"
+        default=True, description="scan: zigzag rows, or all rows in one direction"
     )
     climb: Annotated[bool, Key(options=("--climb/--conventional",))] = Field(
-        default=True, description="climb milling, else conventional"
+        default=True, description="climb or conventional milling"
     )
     region_mm: Annotated[
         Corners | None, Key(metavar="X0 Y0 X1 Y1", unset="scan: the part's box, contour: the stock's")
-    ] = Field(default=None, description="boundary of the tool tip, x0, y0, x1, y1")
+    ] = Field(default=None, description="boundary that the tool axis stays in: x0, y0, x1, y1")
     overhang_mm: Annotated[float | None, Key(unset="scan: 0, contour: the tool radius")] = Field(
-        default=None, ge=0.0, description="how far the tool tip may go beyond the boundary"
+        default=None, ge=0.0, description="how far the tool axis may go beyond the boundary"
     )
     floor_z_mm: Annotated[float | None, Key(unset="the part's lowest point")] = Field(
-        default=None, description="lowest height of the tool tip"
+        default=None, description="lowest Z of the tool tip"
     )
     stock_mm: Annotated[BoxCorners | None, Key(metavar="X0 Y0 Z0 X1 Y1 Z1", unset="the part's box")] = Field(
-        default=None, description="stock, x0, y0, z0, x1, y1, z1"
+        default=None, description="box of stock: x0, y0, z0, x1, y1, z1"
     )
     remaining_mm: Annotated[float | None, Key(unset="all of the stock")] = Field(
-        default=None, ge=0.0, description="rest material on the part before this path"
+        default=None, ge=0.0, description="thickness of rest material on the part before this path"
     )
     feed_mm_min: float = Field(default=600.0, gt=0.0, description="cutting feed")
     plunge_mm_min: Annotated[float, Key(options=("--plunge-feed",))] = Field(
-        default=200.0, gt=0.0, description="feed of plunges, ramps and helices"
+        default=200.0, gt=0.0, description="feed in plunges, ramps and helices"
     )
     link_mm_min: Annotated[float | None, Key(options=("--link-feed",), unset="the cutting feed")] = Field(
-        default=None, gt=0.0, description="feed of links along the surface between passes"
+        default=None, gt=0.0, description="feed in links along the surface between passes"
     )
     lead_mm_min: Annotated[float | None, Key(options=("--lead-feed",), unset="the cutting feed")] = Field(
-        default=None, gt=0.0, description="feed of lead-ins and lead-outs"
+        default=None, gt=0.0, description="feed in lead-ins and lead-outs"
     )
     spindle_rpm: float = Field(default=3600.0, gt=0.0, description="spindle speed")
     safe_z_mm: Annotated[float | None, Key(unset="5 mm above the stock")] = Field(
-        default=None, description="height of rapids"
+        default=None, description="Z of rapids, in part coordinates"
     )
-    clearance_mm: float = Field(default=1.0, gt=0.0, description="height above material where rapids down end")
-    stay_down_mm: Annotated[float | None, Key(unset="3 step-overs or radial depths")] = Field(
+    clearance_mm: float = Field(
+        default=1.0,
+        gt=0.0,
+        description="height above the material at which a rapid down ends and the plunge feed begins",
+    )
+    stay_down_mm: Annotated[float | None, Key(unset="3 stepovers or radial depths")] = Field(
         default=None, ge=0.0, description="longest link along the surface between passes; longer ones retract"
     )
     low_links: bool = Field(
         default=False,
-        description="rapids at clearance above the rest material, where it is known, instead of safe_z_mm",
+        description="rapid at clearance above the rest material, where it is known, instead of at the safe Z",
     )
-    entry: Literal["plunge", "ramp", "helix"] = Field(default="ramp", description="entry into material")
+    entry: Literal["plunge", "ramp", "helix"] = Field(default="ramp", description="type of entry into material")
     ramp_deg: Annotated[float, Key(options=("--ramp-angle",))] = Field(
         default=3.0, gt=0.0, lt=90.0, description="steepest angle of ramps and helices"
     )
@@ -87,14 +91,14 @@ class PathSettings(Table):
         default=None, gt=0.0, description="radius of helices"
     )
     lead_mm: float = Field(default=0.0, ge=0.0, description="lead-in/lead-out radius, 0 for none")
-    thin_mm: float = Field(default=0.0002, ge=0.0, description="points within this of a chord are omitted, 0 keeps all")
+    thin_mm: float = Field(default=0.0002, ge=0.0, description="points this close to a chord are omitted; 0 keeps all")
     arcs_mm: Annotated[float | None, Key(unset="no arcs")] = Field(
-        default=None, gt=0.0, description="tolerance of fitted arcs"
+        default=None, gt=0.0, description="tolerance for fitting arcs"
     )
     gouge_mm: float = Field(
-        default=0.0005, ge=0.0, description="largest deviation of omitted points and arcs towards the material"
+        default=0.0005, ge=0.0, description="largest deviation towards the part from omitting points and fitting arcs"
     )
-    tool_number: int = Field(default=1, ge=1, description="tool number, for T and H words")
+    tool_number: int = Field(default=1, ge=1, description="tool number for the T and H words")
     teeth: int = Field(default=2, ge=1, le=100, description="number of flutes, for the job file")
     coolant: Literal["off", "mist", "flood"] = Field(default="flood", description="coolant")
     dialect: Literal["fanuc", "haas", "linuxcnc", "grbl"] = Field(default="fanuc", description="control")
@@ -126,12 +130,12 @@ class ReachSettings(Table):
     pitch_mm: Annotated[float | None, Key(unset="longest side / 600")] = Field(
         default=None, gt=0.0, description="largest distance between the part's slices"
     )
-    thin_mm: Annotated[float | None, Key(unset="what the slices resolve")] = Field(
+    thin_mm: Annotated[float | None, Key(unset="the resolution of the slices")] = Field(
         default=None, ge=0.0, description="uncut material thinner than this is ignored"
     )
     above: Annotated[bool, Key(options=("--above",))] = Field(
         default=False, description="ball tools reach the part from above only, not from any side"
     )
     largest: Annotated[bool, Key(options=("--largest",))] = Field(
-        default=False, description="find the largest ball that finishes the part"
+        default=False, description="find the largest ball tool that finishes the part"
     )

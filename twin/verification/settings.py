@@ -14,15 +14,15 @@ class VerifySettings(Table):
 
     tolerance_mm: float = Field(default=0.02, gt=0.0, description="permitted depth of gouges")
     excess_mm: Annotated[float | None, Key(unset="the tolerance")] = Field(
-        default=None, gt=0.0, description="permitted excess, e.g. allowance and scallops"
+        default=None, gt=0.0, description="permitted height of excess material, e.g. allowance and scallops"
     )
     region_mm: Annotated[
         tuple[float, float, float, float] | None,
         Strict(False),
         Key(metavar="X0 Y0 X1 Y1", unset="the design's box"),
-    ] = Field(default=None, description="region to verify, x0, y0, x1, y1")
+    ] = Field(default=None, description="region to verify: x0, y0, x1, y1")
     pitch_mm: Annotated[float | None, Key(unset="the job's")] = Field(
-        default=None, gt=0.0, description="slice pitch of the replay"
+        default=None, gt=0.0, description="distance between slices in the replay"
     )
 
     @model_validator(mode="after")

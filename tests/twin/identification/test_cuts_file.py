@@ -129,7 +129,7 @@ def test_mistakes_in_a_cut(changes: dict[str, object], message: str) -> None:
         ({"tool": TOOL, "cuts": []}, "cuts = []: expected at least one table [[cuts]]"),
         (
             {"tool": TOOL, "cuts": [CUT, CUT]},
-            'cuts[1].name = "ap1": expected a name of its own, cuts[0] has it already',
+            'cuts[1].name = "ap1": expected a unique name, cuts[0] already has it',
         ),
         (
             {"tool": TOOL | {"corner_radius_mm": 9.0}, "cuts": [CUT]},

@@ -251,7 +251,7 @@ def test_settings_that_do_not_fit_are_refused(values: dict[str, Any], error: typ
     [
         (
             {"stepover_mm": 0.0},
-            r"a.toml: stepover_mm = 0.0: expected a number above 0 \(scan: step-over, the distance between rows\)",
+            r"a.toml: stepover_mm = 0.0: expected a number above 0 \(scan: stepover, the distance between rows\)",
         ),
         ({"allowance_mm": -1.0}, r"allowance_mm = -1.0: expected a number at least 0"),
         ({"stepovr_mm": 1.0}, "stepovr_mm: unknown key; did you mean stepover_mm"),

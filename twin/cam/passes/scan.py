@@ -20,7 +20,7 @@ from twin.cam.slices.stretches import below
 Direction: TypeAlias = Literal["x", "y"]
 #: The planes that rows along a direction lie in, by their normal.
 ACROSS: dict[Direction, int] = {"x": 1, "y": 0}
-#: Part of the step-over by which rows may be farther apart for rounding.
+#: Part of the stepover by which rows may be farther apart for rounding.
 _SLACK = 1e-9
 
 
@@ -61,7 +61,7 @@ class ScanOptions:
 
 
 def row_positions(low_mm: float, high_mm: float, stepover_mm: float) -> FloatArray:
-    """Evenly spread rows, both ends included, no farther apart than the step-over; shape (n >= 1,)."""
+    """Evenly spread rows, both ends included, no farther apart than the stepover; shape (n >= 1,)."""
     gaps = math.ceil((high_mm - low_mm) / stepover_mm - _SLACK)
     return np.linspace(low_mm, high_mm, gaps + 1)
 

@@ -16,7 +16,7 @@ _OUT = "Results"
 
 @options_from(CompareSettings, "windows", omit={*LogReading.model_fields, *LogCorrections.model_fields})
 @options_from(LogReading, "reading", panel="Reading the log")
-@options_from(LogCorrections, "corrections", panel="Making it comparable")
+@options_from(LogCorrections, "corrections", panel="Corrections before comparing")
 def compare(
     windows: Mapping[str, Any],
     reading: Mapping[str, Any],
@@ -28,27 +28,31 @@ def compare(
         Path | None,
         typer.Argument(
             metavar="MEASURED",
-            help="Log: CSV, TXT, DynoWare, TDMS, LVM, MAT, HDF5, Parquet, MCAP; the job's measured.file if not given.",
+            help="Log (CSV, TXT, DynoWare, TDMS, LVM, MAT, HDF5, Parquet, MCAP); the job's measured.file if not given.",
             show_default=False,
         ),
     ] = None,
     report: Annotated[
         Path | None,
         typer.Option(
-            metavar="DIR", help="Write report.html and its pictures.", rich_help_panel=_OUT, show_default=False
+            metavar="DIR", help="Folder for report.html and its pictures.", rich_help_panel=_OUT, show_default=False
         ),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.", rich_help_panel=_OUT)] = False,
-    view: Annotated[bool, typer.Option("--view", help="Show both in rerun.", rich_help_panel=_OUT)] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object in place of the tables.", rich_help_panel=_OUT)
+    ] = False,
+    view: Annotated[
+        bool, typer.Option("--view", help="Show measured and simulated forces in rerun.", rich_help_panel=_OUT)
+    ] = False,
     rrd: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write a rerun recording.", rich_help_panel=_OUT, show_default=False),
+        typer.Option(metavar="FILE", help="Rerun recording to write.", rich_help_panel=_OUT, show_default=False),
     ] = None,
     mcap: Annotated[
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Archive of the comparison; RUN.MEASURED.compare.mcap next to the run.",
+            help="Archive of the comparison to write; RUN.MEASURED.compare.mcap next to the run if not given.",
             rich_help_panel=_OUT,
             show_default=False,
         ),
@@ -56,19 +60,28 @@ def compare(
     batch: Annotated[
         Path | None,
         typer.Option(
-            metavar="TABLE", help="Compare the rows of a .csv or .toml table.", rich_help_panel=_OUT, show_default=False
+            metavar="TABLE",
+            help="Compare every row of this .csv or .toml table of runs and logs.",
+            rich_help_panel=_OUT,
+            show_default=False,
         ),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="FILE", help="Batch: table of errors.", rich_help_panel=_OUT, show_default=False
+            "--out",
+            "-o",
+            metavar="FILE",
+            help="Table of errors to write, for --batch.",
+            rich_help_panel=_OUT,
+            show_default=False,
         ),
     ] = None,
 ) -> None:
-    """Lay a measured force log over a run: errors, harmonics, report.
+    """Compare a measured force log with a run: errors, harmonics, report.
 
-    Every correction is printed and stored; only the delay is searched unless it is given.
+    Every correction is printed and stored. Only the delay is found by the program unless you give it; all other
+    corrections are off unless you turn them on.
     """
     from twin.cli.commands.compare_work import Outputs, run_batch, run_one
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from twin.identification.result import Identified
 
 
-@options_from(Fit, "fit", panel="Fit, in place of the file's")
+@options_from(Fit, "fit", panel="Fit: these options override the file's [fit] table")
 def identify(
     cuts_file: Annotated[Path, typer.Argument(metavar="CUTS", help="File of test cuts (TOML).", show_default=False)],
     fit: Mapping[str, Any],
@@ -27,15 +27,15 @@ def identify(
             "-o",
             "--out",
             metavar="FILE.toml",
-            help="Write the coefficients here, and a plot next to them.",
+            help="Coefficients to write; a plot is written next to them.",
             show_default=False,
         ),
     ] = None,
     plot: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.png", help="Draw measured and fitted forces here.", show_default=False),
+        typer.Option(metavar="FILE.png", help="Plot of measured and fitted forces to write.", show_default=False),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace output files that are there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace output files that exist.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")] = False,
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Print how each log was read and corrected.")
@@ -43,8 +43,8 @@ def identify(
 ) -> None:
     """Find cutting coefficients from test cuts, with their errors.
 
-    mean: linear least squares on mean forces. iterative: search that matches simulated mean forces. waveform: least
-    squares on the force over a revolution; phases are found, with --runout the runout as well.
+    Methods: mean is linear least squares on mean forces; iterative searches until simulated mean forces match;
+    waveform is least squares on the force over a revolution; it finds spindle phases and, with --runout, the runout.
     """
     from twin.errors import IdentifyError
     from twin.identification.cuts.load import load_cuts

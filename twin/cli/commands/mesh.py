@@ -24,7 +24,7 @@ def mesh(
 ) -> None:
     """Write the machined part as a triangle mesh.
 
-    From an archive it is the surface recorded last; from a job it is computed from the slices after a replay.
+    From an archive: the last surface recorded. From a job: the job is replayed, and the mesh is made from the slices.
     """
     from twin.cli.console import results
     from twin.workpiece.mesh_file import check_mesh_path, write_mesh

@@ -35,7 +35,8 @@ def mold(
 ) -> None:
     """Machine a mold from its STL file: roughing, semi-finishing of rest material, finishing; one program per stage.
 
-    All parameters are keys of the mold job (docs/mold.md): stages and tools are tables, which options cannot give.
+    All parameters are keys of the mold job file (docs/mold.md); options cannot set them, since stages and
+    tools are tables.
     """
     from twin.cli.console import warn
     from twin.cli.show.mold_tables import mold_json, print_mold

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def paths(
     strategy: Annotated[
         Literal["contour", "scan"],
-        typer.Argument(help="Levels of constant height, or parallel rows.", show_default=False),
+        typer.Argument(help="contour: levels of constant Z; scan: parallel rows over the surface.", show_default=False),
     ],
     part: Part,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="NC program to write.", show_default=False)],
@@ -40,8 +40,8 @@ def paths(
 ) -> None:
     """Make an NC program from a part's STL file, and a job file that replays it.
 
-    All parameters of the tool path have defaults except the tool. They can also be given in a TOML file, under their
-    names with units (docs/paths.md); options override the file. Nothing is written if the tool cannot cut anything.
+    All parameters of the tool path except the tool have defaults. They can also be given in a TOML file, by their key
+    names (docs/paths.md); options override the file. Nothing is written if the tool cannot cut anything.
     """
     from twin.cli.console import warn
     from twin.cli.show.path_summary import path_json, print_path

@@ -32,9 +32,9 @@ def verify(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Replay a job without forces and compare the machined surface with the design: gouges, excess, positions.
+    """Replay a job without forces and compare the machined surface with the design: gouges, excess material, positions.
 
-    Ends with exit code 4 if a gouge is deeper than the tolerance, or the excess is larger than permitted.
+    Ends with exit code 4 if a gouge is deeper than the tolerance or the excess is more than permitted.
     """
     from twin.cli.show.progress import progress
     from twin.cli.show.verify_tables import deviation_json, print_deviation

@@ -9,7 +9,9 @@ import typer
 
 
 def view(
-    run: Annotated[Path, typer.Argument(metavar="RUN.mcap", help="Archive of a run.", show_default=False)],
+    run: Annotated[
+        Path, typer.Argument(metavar="RUN.mcap", help="Archive of a run or of a comparison.", show_default=False)
+    ],
     rrd: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Write a rerun recording instead of opening the viewer.", show_default=False),

@@ -22,7 +22,9 @@ class CutTool(Tool):
 
     number: int = Field(default=1, ge=1, description="tool number, without meaning here")
     flute_length_mm: float = Field(
-        default=0.0, gt=0.0, description="height of the cutting part above the tip; as needed by the cuts if not given"
+        default=0.0,
+        gt=0.0,
+        description="length of the cutting part, measured from the tip; as needed by the cuts if not given",
     )
 
 
@@ -30,11 +32,12 @@ class CutSource(Table):
     """Name of a cut, and where its force comes from."""
 
     name: Annotated[str, Key(unset="the log's name")] = Field(
-        default="", description="name of the cut, in tables and for holdout"
+        default="", description="name of the cut in tables and for holdout"
     )
     log: FilePath | None = Field(default=None, description="measured log, relative to this file's folder")
     mean_force_n: Point | None = Field(
-        default=None, description="mean force [x, y, z] in place of a log, N; map and force_on hold as for Fx, Fy, Fz"
+        default=None,
+        description="mean force [x, y, z] in place of a log, N; map and force_on apply as to columns Fx, Fy, Fz",
     )
     mean_error_n: Annotated[Point | None, Key(unset="unknown")] = Field(
         default=None, description="standard errors of mean_force_n, N"
@@ -49,29 +52,30 @@ class CutEngagement(Table):
 
     direction: Direction | None = Field(
         default=None,
-        description="slot, up milling (stock at y > 0 of the axis) or down (climb) milling (y < 0); feed along +x, M3",
+        description="slot, up (conventional) milling with the stock on the +y side of the tool axis, or down (climb) "
+        "milling with it on the -y side; feed along +x, M3",
     )
     axial_depth_mm: float | None = Field(default=None, gt=0.0, description="axial depth of cut, mm")
     radial_depth_mm: Annotated[float | None, Key(unset="the diameter, for a slot")] = Field(
-        default=None, gt=0.0, description="radial depth of cut, within the tool's nominal diameter, mm"
+        default=None, gt=0.0, description="radial depth of cut, at most the tool's nominal diameter, mm"
     )
     spindle_rpm: float | None = Field(default=None, gt=0.0, description="spindle speed, rpm")
-    feed_mm_min: float | None = Field(default=None, gt=0.0, description="feed, mm/min")
+    feed_mm_min: float | None = Field(default=None, gt=0.0, description="feed rate, mm/min")
 
 
 class Shared(LogReading, CutEngagement):
     """Keys of one cut that `[defaults]` may give for all cuts: engagement, how the log is read, and its steady part."""
 
     window_s: Annotated[Window | None, Key(unset="detected")] = Field(
-        default=None, description="[from, to]: the steady cut in the log's time"
+        default=None, description="[from, to]: the steady cut, in the log's time, s"
     )
     air_s: Annotated[Windows | None, Key(unset="detected")] = Field(
-        default=None, description="[[from, to], ...]: parts of the log without cutting"
+        default=None, description="[[from, to], ...]: parts of the log without cutting, s"
     )
     zero: Literal["auto", "line", "constant", "none"] = Field(
         default="auto",
-        description="zero that is subtracted: line or constant through the air, none, or auto: line with air on both "
-        "sides of the cut, else constant, none without air",
+        description="amplifier zero to subtract: line or constant fitted to the air, or none; auto is line with air on "
+        "both sides of the cut, constant with air on one side, none without air",
     )
 
 
@@ -79,15 +83,15 @@ class Cut(Shared, CutSource):
     """One test cut."""
 
     run_window_s: Annotated[Window | None, Key(unset="where it cuts")] = Field(
-        default=None, description="[from, to]: the part of the job's run that is used, machine time"
+        default=None, description="[from, to]: the part of the job's run to use, machine time, s"
     )
     lag_s: Annotated[float | None, Key(unset="found by cross-correlation")] = Field(
-        default=None, description="log's time minus machine time of the job's run, s"
+        default=None, description="delay of the log: its time minus the machine time of the job's run, s"
     )
     spindle_angle_deg: Annotated[float | None, Key(unset="found")] = Field(
-        default=None, description="angle of tooth 0 at the log's time 0, from +x in the direction of rotation"
+        default=None, description="angle of tooth 0 at the log's time 0, measured from +x in the direction of rotation"
     )
-    holdout: bool = Field(default=False, description="report this cut, but do not fit it")
+    holdout: bool = Field(default=False, description="keep this cut out of the fit, and report its errors")
 
 
 class CutsFile(Table):

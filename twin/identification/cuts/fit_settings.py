@@ -21,16 +21,16 @@ class Fit(Table):
         description="method: mean (least squares on mean forces), iterative (search by simulation), or waveform",
     )
     holdout: Annotated[Texts, Key(metavar="NAME", unset="none")] = Field(
-        default=(), description="name of a cut that is reported and not fitted"
+        default=(), description="name of a cut to keep out of the fit; its errors are reported"
     )
     weights: Literal["errors", "equal"] = Field(
-        default="errors", description="weights by the standard errors of the means, or equal"
+        default="errors", description="weight the means by their standard errors, or equally"
     )
-    fixed: dict[Name, float] = Field(default_factory=dict, description="coefficients with given values")
-    start: dict[Name, float] = Field(default_factory=dict, description="start of the iterative search")
+    fixed: dict[Name, float] = Field(default_factory=dict, description="coefficients to hold at given values")
+    start: dict[Name, float] = Field(default_factory=dict, description="starting values of the iterative search")
     lower: dict[Name, float] = Field(default_factory=dict, description="lower bounds of the iterative search")
     upper: dict[Name, float] = Field(default_factory=dict, description="upper bounds of the iterative search")
-    runout: bool = Field(default=False, description="find the runout as well (waveform)")
+    runout: bool = Field(default=False, description="find the runout too (waveform)")
     harmonics: Annotated[int | None, Key(unset="12 per tooth, at most 60")] = Field(
         default=None,
         ge=1,
@@ -38,11 +38,12 @@ class Fit(Table):
         description="number of harmonics of the spindle frequency (waveform)",
     )
     lowpass_hz: Annotated[float | None, Key(unset="none")] = Field(
-        default=None, gt=0.0, description="highest frequency that is compared, Hz (waveform)"
+        default=None, gt=0.0, description="highest frequency to compare, Hz (waveform)"
     )
     speed: Literal["found", "given"] = Field(
-        default="found", description="spindle speed of a log: found within 1 % of the given one, or as given"
+        default="found",
+        description="spindle speed of a log: found in the log within 1 % of the given speed, or as given",
     )
     source: Annotated[str | None, Key(unset="none")] = Field(
-        default=None, min_length=1, pattern=r"\S", description="source that is written with the coefficients"
+        default=None, min_length=1, pattern=r"\S", description="source to write with the coefficients"
     )

@@ -90,7 +90,7 @@ def _names(facts: Facts) -> Iterator[Problem]:
     for name, count in Counter(names).items():
         if count > 1:
             index = len(names) - 1 - names[::-1].index(name)
-            yield wrong(("cuts", index, "name"), name, f"a name of its own, cuts[{names.index(name)}] has it already")
+            yield wrong(("cuts", index, "name"), name, f"a unique name, cuts[{names.index(name)}] already has it")
     listed = facts.get("fit", "holdout") or ()
     for name in listed:
         if name not in names:
