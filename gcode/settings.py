@@ -25,14 +25,14 @@ class ToolOffset:
     """One row of the tool offset table. Lengths are mm.
 
     Attributes:
-        length_mm: geometry of the length offset (H), along z.
-        length_wear_mm: wear, added to it.
-        radius_mm: geometry of the cutter radius (D).
-        radius_wear_mm: wear, added to it.
-        x_mm: offset in x, which only some controls have.
-        y_mm: offset in y.
-        pocket: pocket of the magazine, None where it has none.
-        orientation: orientation (1 to 9) of a lathe tool, 0 for a rotating tool; 9 has its edge all around, as 0.
+        length_mm: length geometry (H), along z.
+        length_wear_mm: length wear, added to the geometry.
+        radius_mm: radius geometry (D).
+        radius_wear_mm: radius wear, added to the geometry.
+        x_mm: tool offset in x (LinuxCNC).
+        y_mm: tool offset in y (LinuxCNC).
+        pocket: pocket in the tool magazine, None if it has none.
+        orientation: tip orientation (1 to 9) of a lathe tool, 0 for a milling tool; 9 is treated as 0.
         comment: description.
 
     Raises:
@@ -75,9 +75,9 @@ class Limits:
 
     Attributes:
         blocks: blocks executed in all.
-        jumps: jumps back in all, as loops make them.
-        nesting: levels of calls and macros.
-        errors: errors that a check collects before it stops.
+        jumps: backward jumps executed in all (loops).
+        nesting: depth of subprogram and macro calls.
+        errors: number of errors after which a check stops.
     """
 
     blocks: int = 20_000_000
@@ -93,26 +93,26 @@ class MachineSettings:
     Attributes:
         offsets: work offsets by name (`ALL_OFFSETS`): the position of each work zero; by default all are at machine
             zero. Only those given, and those that the program sets by G10, may be used.
-        rotations_deg: rotation about z of each work offset, counter-clockwise; those missing are 0.
-        wcs: work offset that is active when the program starts.
-        shift_mm: shift by G92 that holds when the program starts.
-        external_offset_mm: added to every work offset (the external or common offset).
-        home_mm: gauge point at the reference point that G28 goes to.
-        reference_points_mm: gauge points of the further reference points (G30 P2, P3, P4) by number.
-        start_mm: gauge point when the program starts.
+        rotations_deg: rotation about z of each work offset, counter-clockwise; 0 for those not given.
+        wcs: work offset that is active at the start of the program.
+        shift_mm: G92 shift that is active at the start of the program.
+        external_offset_mm: external (common) work offset, added to every work offset.
+        home_mm: gauge point at the reference point of G28.
+        reference_points_mm: gauge point at each further reference point (G30 P2, P3, P4), by number.
+        start_mm: gauge point at the start of the program.
         tools: tool offset table: rows by number, which H, D or T name. None where it is not known: every length and
             radius then counts as 0, with a notice.
-        tool: number of the tool in the spindle when the program starts, 0 for none.
-        variables: common variables or persistent parameters by number, at the start.
+        tool: number of the tool in the spindle at the start of the program, 0 for none.
+        variables: values of common variables or persistent parameters at the start of the program, by number.
         search_path: folders of subprogram files, searched after the folder of the program.
-        arc_tolerance_mm: how far the radii at an arc's two ends may differ; None for the dialect's own rule.
-        arc_centres: whether I, J, K at start-up are measured from the arc's start or are coordinates.
-        block_delete: True where the block delete switch is on.
-        optional_stop: True where the optional stop switch is on; the `ProgramStop` event reports it.
+        arc_tolerance_mm: largest difference of the radii at the two ends of an arc; None for the dialect's own rule.
+        arc_centres: I, J, K at the start of the program: ``incremental`` from the arc's start point, or ``absolute``.
+        block_delete: True if the block delete switch is on.
+        optional_stop: True if the optional stop switch is on; the `ProgramStop` event reports it.
         units: unit of lengths and feeds until the first G20 or G21.
-        machine_units: unit in which the machine's own offset variables count, where a program reads or sets them.
-        decimal_point: ``calculator``: X100 is 100 mm; ``increment``: a number without a point counts the least input
-            increment (0.001 mm or 0.0001 inch), as FANUC's parameter 3401 bit 0 decides.
+        machine_units: unit of the machine's offset variables, as a program reads and sets them (LinuxCNC).
+        decimal_point: numbers without a decimal point: ``calculator``: X100 is 100 mm; ``increment``: X100 is 100 least
+            input increments (0.001 mm or 0.0001 inch each). FANUC: parameter 3401 bit 0.
         compensation_startup: type of start-up and cancel of FANUC's cutter compensation (parameter 5003 bits 0, 1).
         limits: see `Limits`.
 

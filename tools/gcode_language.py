@@ -13,6 +13,7 @@ from gcode.bulk import plain_runs
 from gcode.compensation.fanuc import BLOCKS_READ_OVER
 from gcode.control import variables
 from gcode.cycles.hole import MOST_STEPS
+from gcode.cycles.rules import DwellUnit
 from gcode.dialects import ArcTolerance, DwellWord
 from gcode.dialects.macro_language import FANUC_MACRO, LINUXCNC_MACRO, MacroLanguage
 from gcode.flow import owords
@@ -30,25 +31,25 @@ LANGUAGES: Mapping[str, MacroLanguage] = {"fanuc, haas": FANUC_MACRO, "linuxcnc"
 #: Functions and operators, and values of the argument that show what differs.
 EXAMPLES: tuple[tuple[str, str, str], ...] = (
     ("SIN", "sine, degrees", "SIN[30]"),
-    ("COS", "cosine", "COS[60]"),
-    ("TAN", "tangent", "TAN[45]"),
+    ("COS", "cosine, degrees", "COS[60]"),
+    ("TAN", "tangent, degrees", "TAN[45]"),
     ("ASIN", "arc sine", "ASIN[-0.5]"),
     ("ACOS", "arc cosine", "ACOS[-0.5]"),
-    ("ATAN", "arc tangent of two lengths", "ATAN[-1]/[1]"),
-    ("ATAN", "of one number", "ATAN[1]"),
-    ("ATAN", "of two, with a comma", "ATAN[-1,1]"),
+    ("ATAN", "arc tangent of a quotient", "ATAN[-1]/[1]"),
+    ("ATAN", "arc tangent of one number", "ATAN[1]"),
+    ("ATAN", "arc tangent of a quotient, with a comma", "ATAN[-1,1]"),
     ("SQRT", "square root", "SQRT[2]"),
-    ("ABS", "size", "ABS[-2]"),
+    ("ABS", "absolute value", "ABS[-2]"),
     ("LN", "natural logarithm", "LN[2]"),
     ("EXP", "exponential", "EXP[1]"),
     ("POW", "power", "POW[2,10]"),
     ("**", "power", "[2**10]"),
-    ("ROUND", "nearest whole number, halves away from 0", "ROUND[-2.5]"),
-    ("FIX", "whole number below (FANUC: towards 0)", "FIX[-2.5]"),
-    ("FUP", "whole number above (FANUC: away from 0)", "FUP[-2.5]"),
-    ("BIN", "from binary coded decimals", "BIN[16]"),
-    ("BCD", "to binary coded decimals", "BCD[10]"),
-    ("EXISTS", "1 where a variable was set", "EXISTS[#<a>]"),
+    ("ROUND", "rounds to the nearest whole number, halves away from 0", "ROUND[-2.5]"),
+    ("FIX", "rounds down (FANUC: towards 0)", "FIX[-2.5]"),
+    ("FUP", "rounds up (FANUC: away from 0)", "FUP[-2.5]"),
+    ("BIN", "from binary-coded decimal", "BIN[16]"),
+    ("BCD", "to binary-coded decimal", "BCD[10]"),
+    ("EXISTS", "1 if the variable exists, else 0", "EXISTS[#<a>]"),
     ("MOD", "remainder", "[-7 MOD 3]"),
     ("AND", "FANUC: bitwise, LinuxCNC: logical", "[6 AND 3]"),
     ("OR", "the same", "[6 OR 3]"),
@@ -118,8 +119,8 @@ def named_parameters() -> str:
     """LinuxCNC's named parameters."""
     axes = "xyzabcuvw"
     rows = (
-        ("position in program coordinates", _names(f"_{axis}" for axis in axes)),
-        ("gauge point in machine coordinates", _names(f"_abs_{axis}" for axis in axes)),
+        ("current position, program coordinates", _names(f"_{axis}" for axis in axes)),
+        ("gauge point, machine coordinates", _names(f"_abs_{axis}" for axis in axes)),
         ("state of the control", _names(sorted([*NAMED, "_call_level", "_line"]))),
         ("constant", ", ".join(f"{code(f'#<{name}>')} {CONSTANTS[name]:g}" for name in sorted(CONSTANTS))),
     )
@@ -140,8 +141,15 @@ def field_table(kind: type, values: Mapping[str, Any], *, without: Sequence[str]
     """
     texts = field_texts(kind)
     names = [field.name for field in dataclasses.fields(kind) if field.name not in without]
-    rows = ((code(name), texts[name], *(shown(getattr(one, name)) for one in values.values())) for name in names)
+    rows = (
+        (code(name), texts[name], *(_shown_field(name, getattr(one, name)) for one in values.values()))
+        for name in names
+    )
     return table(("field", "meaning", *values), rows)
+
+
+def _shown_field(name: str, value: Any) -> str:
+    return _ranges(value) if name == "tool_variables" else shown(value)
 
 
 def settings_table() -> str:
@@ -168,6 +176,8 @@ def shown(value: Any) -> str:
         return "none"
     if isinstance(value, ArcTolerance):
         return _tolerance(value)
+    if isinstance(value, DwellUnit):
+        return _dwell_unit(value)
     if dataclasses.is_dataclass(value):
         return _fields(value)
     if isinstance(value, Mapping):
@@ -186,10 +196,22 @@ def _tolerance(value: ArcTolerance) -> str:
     return text + (f", or {value.relative:g} of the radius up to {value.most:g} times that" if value.relative else "")
 
 
+def _dwell_unit(value: DwellUnit) -> str:
+    text = f"{value.seconds:g} s" + (", whole numbers only" if value.whole else "")
+    return text if value.pointed_seconds is None else f"{text}, with a decimal point {value.pointed_seconds:g} s"
+
+
+def _ranges(value: tuple[tuple[int, int, str], ...]) -> str:
+    """System variables of the columns of the tool offset table."""
+    texts = (f"#{first}–#{first + count - 1}: {code(column)}" for first, count, column in value)
+    return ", ".join(texts) or "none"
+
+
 def _fields(value: Any) -> str:
     if isinstance(value, DwellWord):
         pointed = "refused" if value.pointed is None else f"{value.pointed:g} s"
-        return f"{value.seconds:g} s, with a point {pointed}"
+        plain = f"{value.seconds:g} s"
+        return plain if value.pointed == value.seconds else f"{plain}, with a decimal point {pointed}"
     given = ((field.name, getattr(value, field.name)) for field in dataclasses.fields(value))
     return ", ".join(f"{re.sub('_', ' ', name)} {shown(one)}" for name, one in given if one is not None)
 
@@ -200,20 +222,20 @@ def limits() -> str:
     rows = (
         ("blocks executed", f"{given.blocks:,}", "setting `limits.blocks`"),
         ("jumps back (loops)", f"{given.jumps:,}", "setting `limits.jumps`"),
-        ("nested calls", str(given.nesting), "setting `limits.nesting`"),
+        ("call depth", str(given.nesting), "setting `limits.nesting`"),
         ("errors that `check` collects", str(given.errors), "setting `limits.errors`"),
         ("size of a program file", f"{program.MAX_BYTES // 2**20:,} MiB", ""),
         ("size of a table or settings file", f"{LARGEST_BYTES // 2**20} MiB", ""),
         ("length of a line", f"{block_parser.MAX_LINE:,} characters", ""),
-        ("size of a number", f"{block_parser.MAX_VALUE:,.0f}", ""),
+        ("magnitude of a number", f"{block_parser.MAX_VALUE:,.0f}", ""),
         ("nested brackets", str(MAX_DEPTH), ""),
-        ("steps of one block with a cycle", f"{MOST_STEPS:,}", ""),
+        ("steps of one canned cycle block", f"{MOST_STEPS:,}", ""),
         ("additional work offsets", str(ADDITIONAL_OFFSETS), "G54.1 P"),
-        ("named parameters of a level", f"{variables._MOST_NAMES:,}", "LinuxCNC"),
+        ("named parameters of one call level", f"{variables._MOST_NAMES:,}", "LinuxCNC"),
         ("arguments of a subroutine", str(owords._ARGUMENTS), "LinuxCNC"),
-        ("lines before the % of a leader", str(leader.LEADER_LINES), "FANUC, Haas"),
-        ("blocks without motion that compensation skips", str(BLOCKS_READ_OVER), "FANUC, Haas"),
-        ("straight motions for a spline", str(splines.CURVE_PIECES), "LinuxCNC"),
-        ("lines taken at once", f"{plain_runs.MAX_LINES:,}", "plain straight motions; no visible effect"),
+        ("lines of a leader before the %", str(leader.LEADER_LINES), "FANUC, Haas"),
+        ("blocks without motion that cutter compensation reads past", str(BLOCKS_READ_OVER), "FANUC, Haas"),
+        ("straight motions per spline", str(splines.CURVE_PIECES), "LinuxCNC"),
+        ("lines read in one batch", f"{plain_runs.MAX_LINES:,}", "plain straight motions; no visible effect"),
     )
     return table(("quantity", "at most", ""), rows)

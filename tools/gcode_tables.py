@@ -56,9 +56,9 @@ ACTS: Mapping[Act, str] = {
     Act.RESTART: "spindle on again",
     Act.ORIENT: "spindle orientation",
     Act.OPERATOR: "stop for the operator",
-    Act.TAP_START: "spindle on if the tap is rigid",
+    Act.TAP_START: "spindle on if tapping is rigid",
     Act.TAP_REVERSE: "spindle reversed",
-    Act.TAP_END: "spindle forward, or stopped if rigid",
+    Act.TAP_END: "spindle forward again, or stopped if tapping is rigid",
     Act.TAP_BOTTOM: "tap to Z",
     Act.TAP_R: "tap out to R",
     Act.TAP_CLEAR: "tap out to the return level",
@@ -66,16 +66,16 @@ ACTS: Mapping[Act, str] = {
 #: Data that G10 writes.
 DATA: Mapping[str, str] = {
     "zero": "work offset P",
-    "zero-here": "work offset P from the programmed position of the tool",
+    "zero-here": "work offset P, set so that the present tool position gets the given coordinates",
     "additional": "additional work offset P",
     "length": "length geometry of tool offset P",
     "length-wear": "length wear of tool offset P",
     "radius": "radius geometry of tool offset P",
     "radius-wear": "radius wear of tool offset P",
-    "ignored": "data up to G11, not executed: notices",
-    "tool": "row of tool P",
-    "tool-here": "row of tool P from the programmed position of the tool",
-    "tool-at-fixture": "the same, in G59.3 without G92",
+    "ignored": "data entry up to G11, reported by notices and not executed",
+    "tool": "tool table entry P",
+    "tool-here": "tool table entry P, set so that the present tool position gets the given coordinates",
+    "tool-at-fixture": "the same, with coordinates of G59.3 and without G92",
 }
 
 
@@ -141,7 +141,7 @@ def _cycles() -> str:
     rules = _cycle_rules()
     names = sorted({name for one in rules.values() for name in one.cycles}, key=_rank)
     rows = (row for name in names for row in _cycle_rows(name, rules))
-    return table(("code", "dialects", "meaning", "own words", "needed", "steps over the hole"), rows)
+    return table(("code", "dialects", "meaning", "own words", "required", "steps at the hole"), rows)
 
 
 def _cycle_rows(name: str, rules: Mapping[str, CycleRules]) -> list[tuple[str, ...]]:

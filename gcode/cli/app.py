@@ -16,9 +16,9 @@ from gcode.cli.stats import stats
 app = typer.Typer(
     name="gcode",
     cls=HelpGroup,
-    help="Reads NC programs as a control does: checks them, prints their motions, sums them up, draws them, and "
-    "writes them again for another control.",
-    epilog="Exit codes: 0 done, 1 an error in a program or another file, 2 wrong use of the command line, 130 Ctrl-C, "
+    help="Reads NC programs as a control does: checks them, lists their motions, prints statistics, "
+    "plots the tool path, and rewrites them for another control.",
+    epilog="Exit codes: 0 done, 1 an error in a program or another file, 2 incorrect command line, 130 Ctrl-C, "
     "141 closed pipe.",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},

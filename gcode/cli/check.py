@@ -1,4 +1,4 @@
-"""``gcode check``: finds the errors of programs."""
+"""``gcode check``: finds errors in programs."""
 
 from __future__ import annotations
 
@@ -17,14 +17,19 @@ if TYPE_CHECKING:
 @with_machine
 def check(
     files: Annotated[list[Path], typer.Argument(metavar="FILE", help="NC programs.", show_default=False)],
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object per finding, one per line.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print each finding as a JSON object on its own line.")
+    ] = False,
     notices: Annotated[
-        bool, typer.Option("--notices", help="Also list the words that have no effect on motion here.")
+        bool,
+        typer.Option(
+            "--notices", help="Also list notices: words that are understood but cause no motion, and the like."
+        ),
     ] = False,
     *,
     setup: Setup,
 ) -> None:
-    """Find the errors of programs: as many as one run can detect, each with its position."""
+    """Find errors in programs, as many as possible in one run, each with its line and column."""
     from gcode.cli.console import fail
     from gcode.cli.findings import findings
 

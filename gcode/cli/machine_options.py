@@ -48,7 +48,7 @@ ToolTableOption = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.tbl|.toml",
-        help="Tool table: of LinuxCNC, in the machine's unit, or TOML, in mm. Without one, lengths and radii are 0.",
+        help="Tool table: LinuxCNC (.tbl, machine's unit) or TOML (mm). Without one, lengths and radii are 0.",
         show_default=False,
     ),
 ]
@@ -56,27 +56,29 @@ ParametersOption = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.var",
-        help="Parameter file of LinuxCNC, in the machine's unit: work offsets, reference points, variables.",
+        help="LinuxCNC parameter file, in the machine's unit: work offsets, reference points, variables.",
         show_default=False,
     ),
 ]
 SettingsOption = Annotated[
-    Path | None, typer.Option(metavar="FILE.toml", help="Machine settings, lengths in mm.", show_default=False)
+    Path | None, typer.Option(metavar="FILE.toml", help="Machine settings, all lengths in mm.", show_default=False)
 ]
 UnitOption = Annotated[
     MachineUnit | None,
     typer.Option(
         "--machine-units",
-        help="Unit of .tbl and .var files; default: that of the settings, or mm.",
+        help="Unit of .tbl and .var files; default: `units` of the settings, or mm.",
         show_default=False,
     ),
 ]
-BlockDeleteOption = Annotated[bool, typer.Option("--block-delete", help="Skip blocks that begin with a slash.")]
+BlockDeleteOption = Annotated[
+    bool, typer.Option("--block-delete", help="Skip blocks that start with a slash (block delete switch on).")
+]
 SearchPathOption = Annotated[
     list[Path] | None,
     typer.Option(
         metavar="DIR",
-        help="Folder with subprogram files; may be repeated. The folder of the program is searched first.",
+        help="Folder with subprogram files; may be repeated. The program's own folder is searched first.",
         exists=True,
         file_okay=False,
         show_default=False,

@@ -9,8 +9,8 @@ from gcode.cli.machine_options import ProgramFile, Setup, with_machine
 def motions(file: ProgramFile, *, setup: Setup) -> None:
     """Print every motion and dwell of a program as one JSON object per line.
 
-    Points are the controlled point in machine coordinates, mm: with the work offset, without the tool length. Of a
-    program with an error, the motions before it are printed.
+    Positions are those of the controlled point in machine coordinates, mm: the tool tip while the tool length offset is
+    active, else the gauge point. If the program has an error, the motions before it are printed.
     """
     import json
     import sys

@@ -1,4 +1,4 @@
-"""``gcode plot``: draws the tool path."""
+"""``gcode plot``: plots the tool path."""
 
 from __future__ import annotations
 
@@ -35,13 +35,11 @@ def plot(
     ],
     view: Annotated[View, typer.Option(help="Direction of view.")] = View.ISO,
     colour: Annotated[ColourBy, typer.Option(help="Colour feed motions by height (z) or by tool.")] = ColourBy.Z,
-    tolerance_mm: Annotated[
-        float, typer.Option(min=1e-6, metavar="MM", help="Largest distance of chords from arcs, mm.")
-    ] = 0.01,
+    tolerance_mm: Annotated[float, typer.Option(min=1e-6, metavar="MM", help="Chord tolerance of arcs, mm.")] = 0.01,
     *,
     setup: Setup,
 ) -> None:
-    """Draw the tool path of a program: rapids dashed, feed motions coloured, all axes to one scale."""
+    """Plot the tool path of a program: rapids dashed, feed motions coloured, all axes to the same scale."""
     from gcode.cli.console import UnusableFileError, with_progress
     from gcode.flow.interpreter import interpret_file
     from gcode.report.plot import PlotError, check_picture, plot_path

@@ -1,4 +1,4 @@
-"""``gcode rewrite``: writes a program again."""
+"""``gcode rewrite``: writes a program for another control."""
 
 from __future__ import annotations
 
@@ -34,33 +34,41 @@ def rewrite(
     ],
     to: Annotated[
         DialectName | None,
-        typer.Option(help="Control to write for; default: that of the program.", show_default=False),
+        typer.Option(help="Control to write for; default: the control of the program (--dialect).", show_default=False),
     ] = None,
     units: Annotated[MachineUnit, typer.Option(help="Unit of the new program.")] = MachineUnit.MM,
     distance: Annotated[
         Distance, typer.Option(help="Absolute (G90) or incremental (G91) coordinates.")
     ] = Distance.ABSOLUTE,
     arcs: Annotated[
-        Arcs, typer.Option(help="Arcs by their centre (I, J, K) or, where it is safe, by their radius (R).")
+        Arcs, typer.Option(help="Write arcs with their centre (I, J, K) or, where this is safe, their radius (R).")
     ] = Arcs.CENTRE,
     decimals: Annotated[
-        int | None, typer.Option(min=0, max=6, metavar="N", help="Decimals of coordinates, 0 to 6.", show_default=False)
+        int | None,
+        typer.Option(min=0, max=6, metavar="N", help="Decimal places of coordinates, 0 to 6.", show_default=False),
     ] = None,
     number_step: Annotated[
         int | None,
-        typer.Option(min=1, max=1000, metavar="N", help="Increment of the block numbers.", show_default=False),
+        typer.Option(
+            min=1,
+            max=1000,
+            metavar="N",
+            help="Increment of block numbers (N); without it, blocks are not numbered.",
+            show_default=False,
+        ),
     ] = None,
     program_number: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Program number (O), for FANUC and Haas.", show_default=False)
+        int | None,
+        typer.Option(min=1, metavar="N", help="Program number (O word), for FANUC and Haas.", show_default=False),
     ] = None,
     wcs: Annotated[str, typer.Option(metavar="NAME", help="Work offset that the coordinates refer to.")] = "G54",
     *,
     setup: Setup,
 ) -> None:
-    """Write a program again: the same motions for another control, in other units, or without macros and cycles.
+    """Rewrite a program: the same motions for another control, in other units, or without macros and cycles.
 
-    Subprograms, macros, cycles, work offsets and cutter compensation are resolved into plain motions. A length offset
-    stays G43 H, so the control needs the same tool table.
+    Subprograms, macros, cycles, work offsets and cutter compensation are resolved into plain motions. Tool length
+    offsets stay as G43 H, so the control needs the same tool table.
     """
     from gcode.cli.console import UnusableFileError, with_progress
     from gcode.dialects import dialect_named

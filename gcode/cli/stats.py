@@ -1,4 +1,4 @@
-"""``gcode stats``: sums a program up."""
+"""``gcode stats``: prints statistics of a program."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def stats(
     *,
     setup: Setup,
 ) -> None:
-    """Sum up a program: lengths, times, travel range, feeds and speeds of each tool.
+    """Print statistics of a program: lengths, times, travel range, feeds and speeds of each tool.
 
-    Times are of feed motions, dwells, and rapids at the given rate, without accelerations and tool changes.
+    Times include feed motions, dwells, and rapids at the given rate; acceleration and tool changes are ignored.
     """
     from gcode.cli.console import results, with_progress
     from gcode.flow.interpreter import interpret_file

@@ -126,7 +126,7 @@ class LinuxCncCompensation(Compensation):
         chord = (segment.start - end) / inward
         if abs(chord.real) < 1e-6 * abs(chord):
             problem = f"no entry arc leads to {self.radius:.4f} mm from the programmed arc"
-            expected = "another start"
+            expected = "a different start point"
             raise GcodeError(segment.motion.place, "compensation-arc-entry", problem, expected)
         centre = end + inward * abs(chord) ** 2 / (2.0 * chord.real)
         return replace(segment, end=end, centre=centre)

@@ -87,7 +87,7 @@ def resolve(state: State, block: ParsedBlock) -> Command:
     if repeated and not any(use.rule.letters == "*" for use in uses):
         first, second = repeated
         problem = f"{second.letter} is given twice: {first.text} and {second.text}"
-        raise block.error(second, "repeated-word", problem, f"one {second.letter} in a block")
+        raise block.error(second, "repeated-word", problem, f"one {second.letter} per block")
     moves = _claim_words(state, block, uses, words)
     _check_needs(block, uses, words)
     return Command(block, tuple(uses), words, _phases(dialect, uses, words, moves))
@@ -109,8 +109,8 @@ def _check_groups(block: ParsedBlock, uses: list[Use]) -> None:
     for rule, word in uses:
         for group in rule.groups:
             if group in first:
-                problem = f"{first[group].text} and {word.text} are both of the modal group {group}"
-                raise block.error(word, "group-conflict", problem, "one code of a group in a block")
+                problem = f"{first[group].text} and {word.text} are both in the modal group {group}"
+                raise block.error(word, "group-conflict", problem, "one code of a group per block")
             first[group] = word
 
 
@@ -168,7 +168,9 @@ def _check_rest(state: State, block: ParsedBlock, uses: list[Use], rest: list[Wo
     if word.letter in AXES + dialect.extra_axes and not any(use.rule.takes_axes for use in uses):
         problem = f"{word.text} without a motion code that takes it"
         raise block.error(word, "axis-without-motion", problem, "G0, G1, G2 or G3")
-    raise block.error(word, "unused-word", f"{word.text} belongs to no code in this block or active")
+    raise block.error(
+        word, "unused-word", f"{word.text} is not used by any code in this block or by the active motion code"
+    )
 
 
 def _phases(dialect: Dialect, uses: list[Use], words: Mapping[str, Word], moves: bool) -> tuple[str, ...]:

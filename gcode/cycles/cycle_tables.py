@@ -12,7 +12,7 @@ _TAP_IN = (Act.TAP_START, Act.TAP_BOTTOM)
 #: Strokes of a tap on FANUC: it dwells at the bottom and again at R before the spindle turns round.
 _FANUC_TAP = (*_TAP_IN, Act.DWELL, Act.TAP_REVERSE, Act.TAP_R, Act.DWELL, Act.TAP_END, Act.RAPID_CLEAR)
 _LINUXCNC_TAP = (*_TAP_IN, Act.TAP_REVERSE, Act.DWELL, Act.TAP_CLEAR, Act.TAP_END)
-_PECK_TAP = {"Q": "peck tapping, whose kind of retraction is a parameter of the machine"}
+_PECK_TAP = {"Q": "peck tapping, whose retraction depends on a parameter of the machine"}
 _BY_HAND = (Act.STOP, Act.OPERATOR, Act.RAPID_R, Act.RESTART, Act.RAPID_CLEAR)
 
 
@@ -176,7 +176,7 @@ LINUXCNC_CYCLES = CycleRules(
         ),
         replace(_G89, acts=(Act.FEED_BOTTOM, Act.DWELL, Act.FEED_CLEAR), needs="P"),
     ),
-    absent={"G76": "multi-pass threading of a lathe"},
+    absent={"G76": "multi-pass lathe threading"},
     repeat_letters="L",
     stores_zero_repeats=False,
     memory="code",

@@ -53,14 +53,14 @@ def _cycle(rules: CycleRules, code: str) -> Cycle:
     if code in rules.cycles:
         return rules.cycles[code]
     if code in rules.absent:
-        problem = f"{code} is {rules.absent[code]} on {rules.name}, no drilling cycle"
+        problem = f"{code} is {rules.absent[code]} on {rules.name}, not a hole-making cycle"
         raise CycleError("cycle-unsupported", problem, f"one of {', '.join(rules.cycles)}")
     raise CycleError("cycle-unsupported", f"{rules.name} has no cycle {code}", f"one of {', '.join(rules.cycles)}")
 
 
 def _check_machine(rules: CycleRules, cycle: Cycle, call: CycleInput) -> None:
     if not call.feed_known and not _FEEDS.isdisjoint(cycle.acts):
-        raise CycleError("missing-feed", f"{cycle.code} before any feed was given", "F", "F")
+        raise CycleError("missing-feed", f"{cycle.code} before any feed", "F", "F")
     if call.spindle_direction not in cycle.spindle:
         turns = _SPINDLE[call.spindle_direction]
         wanted = " or ".join(_SPINDLE[direction] for direction in reversed(cycle.spindle))

@@ -112,7 +112,7 @@ def _peck(rules: CycleRules, data: Mapping[str, float]) -> tuple[float, float, f
     if "I" in data:
         peck = (data["I"], data.get("J", 0.0), data.get("K", data["I"] if not data.get("J") else 0.0))
         if min(peck[0], peck[2]) <= 0.0 or peck[1] < 0.0:
-            problem = f"pecks from I{peck[0]:g}, less J{peck[1]:g} each, down to K{peck[2]:g} mm end nowhere"
+            problem = f"pecks from I{peck[0]:g}, less J{peck[1]:g} each, down to K{peck[2]:g} mm never end"
             raise CycleError("cycle-peck", problem, "I and K greater than 0, J not below 0", "I")
         return peck
     size = abs(data["Q"]) if rules.ignores_sign_of_q else data["Q"]

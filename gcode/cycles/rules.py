@@ -102,32 +102,34 @@ class CycleRules:
     Attributes:
         name: the control, for messages.
         cycles: its cycles by code.
-        absent: codes of the family that are not drilling cycles of this control, with their meaning.
-        repeat_letters: letters of the word that repeats a block.
-        stores_zero_repeats: a repeat of 0 stores the words and drills nothing; else it is refused.
-        memory: words hold for all cycles of the ``mode``, until it is left, or only for blocks of the same ``code``.
-        levels_keep_mode: R and the bottom stay absolute or incremental as they were given; else the distance mode
-            of the present block decides how a number given before is read.
-        sticky_in_program_unit: numbers given before are kept in the program's unit, and a change of it changes them.
-        needs_r: R must be given; else the initial level is R where it is not.
-        needs_axis: a cycle in a block without axis words is refused; else a block without axis words and R drills
+        absent: codes from G73 to G89 that are not hole-making cycles on this control, with their meaning.
+        repeat_letters: letters of the repeat count.
+        stores_zero_repeats: a repeat count of 0 stores the words and drills nothing; else it is refused.
+        memory: how long words are kept: ``mode`` for all cycles until cycle mode ends (G80 or a motion code),
+            ``code`` only for blocks with the same cycle code.
+        levels_keep_mode: R and the bottom stay absolute or incremental as programmed; else the distance mode (G90, G91)
+            of the present block decides how a stored number is read.
+        sticky_in_program_unit: stored words are kept as numbers in the program's unit, so G20 or G21 changes
+            their length.
+        needs_r: R must be programmed; else the initial level is used as R if none is programmed.
+        needs_axis: a cycle block without axis words is refused; else a block without axis words and R drills
             nothing and stores nothing.
-        refuses_r_below_bottom: R must not lie below the bottom; else such a hole is drilled upwards.
-        ignores_sign_of_q: a negative Q is taken as its size; else it is refused.
-        stored: letters that a cycle keeps for others though it does not use them; all other unused ones are refused.
-        lift_first: a tool below R goes up to it before it moves in the plane, from the second hole of a block on
-            the tool is taken to be at the level of return, and the control continues from there whatever was moved.
-        empty_moves: motions to where the tool already is are commanded too.
-        dwell: how P is read.
-        retract_mm: how far a chip-breaking peck (G73) goes back.
-        reentry_mm: how far above the last depth the rapid motion of a peck drilling cycle (G83) ends.
-        reentry_within_r: neither goes beyond R.
+        refuses_r_below_bottom: R must not be below the bottom of the hole; else such a hole is drilled upwards.
+        ignores_sign_of_q: a negative Q is used as its absolute value; else it is refused.
+        stored: letters that a cycle does not use but keeps for other cycles; all other unused letters are refused.
+        lift_first: a tool below R retracts to R before it moves in the plane. From the second hole of a block on, the
+            tool is assumed to be at the return level, and the control continues from there whatever was moved.
+        empty_moves: motions of length 0 are commanded as well.
+        dwell: unit of P.
+        retract_mm: retraction after each chip-breaking peck (G73).
+        reentry_mm: distance above the last depth at which the rapid back into the hole ends (G83).
+        reentry_within_r: neither of these two goes above R.
         above_r_mm: how far above R a peck is cleared.
-        peck_tolerance_mm: a last peck as short as this is none of its own.
-        shift_direction: direction of the shift by Q along the plane's first and second axis.
+        peck_tolerance_mm: a last peck this short is merged into the one before it.
+        shift_direction: direction of the shift by Q (G76, G87) along the plane's first and second axis.
         always_rigid: tapping is rigid without M29.
-        restart: direction in which a cycle that stopped the spindle starts it again; None for the one before.
-        tap_follows_spindle: the feed of a tap follows the spindle's angle; else it is a plain feed.
+        restart: direction in which the spindle restarts after a cycle stopped it: 1 for M3; None for the previous one.
+        tap_follows_spindle: the feed of a tap is synchronised with the spindle; else it is a plain feed.
         tap_order: by the letter of the plane's normal, which of (first, second, normal) the control puts into each of
             the three in the strokes of a tap; planes that are not named keep the order.
     """

@@ -83,7 +83,7 @@ def check_needed(rules: CycleRules, cycle: Cycle, call: CycleInput, data: Mappin
 
 
 def _missing(rules: CycleRules, cycle: Cycle, letter: str, wanted: str) -> CycleError:
-    where = "in this block" if rules.memory == "code" else "here or in a block before, since the last G80"
+    where = "in this block" if rules.memory == "code" else "in this block or an earlier one since the last G80"
     return CycleError(
         "cycle-missing-word",
         f"{cycle.code} ({cycle.meaning}) has no {letter}",

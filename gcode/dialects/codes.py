@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TypeAlias
 
+from gcode.cycles import CycleRules
+
 
 class Status(Enum):
     """Treatment of a code."""
@@ -100,7 +102,7 @@ def refused(groups: str, meanings: Mapping[str, str]) -> dict[str, CodeRule]:
     return rules(groups, Status.REFUSED, meanings)
 
 
-#: What every dialect here shares.
+#: Codes that all dialects share.
 COMMON: Table = {
     **executed("motion", "modes", {"G0": "rapid positioning", "G1": "straight feed"}, "XYZ"),
     **executed("motion", "modes", {"G2": "clockwise arc", "G3": "counter-clockwise arc"}, "XYZIJKR"),
@@ -110,7 +112,7 @@ COMMON: Table = {
     **executed("arc-centre", "modes", {"G90.1": "absolute arc centres", "G91.1": "incremental arc centres"}),
     **owning("one-shot", "reference", {"G28": "return to the reference point"}, "XYZ"),
     **owning("one-shot", "reference", {"G30": "return to a further reference point"}, "XYZP"),
-    **owning("one-shot", "data", {"G10": "offset data setting"}, "LPRXYZ"),
+    **owning("one-shot", "data", {"G10": "set offsets"}, "LPRXYZ"),
     **executed("one-shot", "", {"G53": "machine coordinates for one block"}),
     **owning("one-shot", "shift", {"G92": "coordinate system setting"}, "XYZ"),
     **executed("length", "length", {"G43": "tool length offset"}, "H"),
@@ -127,7 +129,7 @@ COMMON: Table = {
     **executed("feed-mode", "feed_mode", {"G93": "inverse time feed", "G94": "feed per minute"}),
 }
 
-#: What FANUC, Haas and LinuxCNC share beyond GRBL.
+#: Codes that FANUC, Haas and LinuxCNC share, and GRBL does not have.
 FULL: Table = {
     **COMMON,
     **executed("tool-change", "tool_change", {"M6": "tool change"}),
@@ -139,21 +141,13 @@ FULL: Table = {
     **owning("one-shot", "shift", {"G52": "local coordinate system"}, "XYZ"),
     **executed("call", "call", {"M98": "subprogram call"}, "PLQK"),
     **executed("call", "call", {"M99": "subprogram end"}, "P"),
-    **noticed("override", {"M48": "overrides on", "M49": "overrides off"}),
+    **noticed("override", {"M48": "feed and speed overrides enabled", "M49": "feed and speed overrides disabled"}),
 }
 
-#: Canned cycles, which FANUC keeps in a group of their own and LinuxCNC among the motions.
-CYCLES: Mapping[str, str] = {
-    "G73": "high-speed peck drilling cycle",
-    "G74": "left-hand tapping cycle",
-    "G76": "fine boring cycle",
-    "G81": "drilling cycle",
-    "G82": "drilling cycle with dwell",
-    "G83": "peck drilling cycle",
-    "G84": "tapping cycle",
-    "G85": "boring cycle",
-    "G86": "boring cycle with spindle stop",
-    "G87": "back boring cycle",
-    "G88": "boring cycle with manual retract",
-    "G89": "boring cycle with dwell",
-}
+#: Words of every canned cycle of FANUC and Haas: hole, levels, peck, dwell or shift, repeats.
+CYCLE_LETTERS = "XYZRQPIJKL"
+
+
+def cycle_meanings(rules: CycleRules) -> dict[str, str]:
+    """The canned cycles of a control, each with its meaning."""
+    return {code: cycle.meaning for code, cycle in rules.cycles.items()}

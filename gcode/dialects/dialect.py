@@ -21,10 +21,10 @@ class ArcTolerance:
     """How far the radii at the two ends of an arc with a programmed centre may differ.
 
     Attributes:
-        absolute_mm: a difference up to this is always accepted.
+        absolute_mm: difference that is always accepted.
         absolute_inch_mm: the same in inch programs (G20), in mm; None for `absolute_mm`.
-        relative: a larger one is accepted up to this part of the larger radius...
-        most: ...and up to this many times what is always accepted.
+        relative: a larger difference is accepted up to this fraction of the larger radius...
+        most: ...and up to this many times `absolute_mm`.
     """
 
     absolute_mm: float
@@ -63,52 +63,53 @@ class Dialect:
     """The language of a control: its codes, words, cycles, variables and rules.
 
     Attributes:
-        name: as users and job files write it.
+        name: name in options and job files.
         codes: its G and M codes.
         order: phases of one block in the order of execution.
         free_letters: letters that are allowed in any block.
-        refused_letters: letters that are known and not supported, with their meaning.
-        extra_axes: letters of further axes, whose positions are kept and reported.
-        whole_block_numbers: an N word is a whole number.
-        corner_letters: letters that cut or round the corner between two feed motions.
-        increment_letters: letters whose numbers count least increments where they have no decimal point and the
-            machine is set so, and are rounded to them where a program works them out.
-        whole_letters: letters whose numbers are rounded to whole ones where a program works them out.
-        power_on_motion: motion code that holds before the program names one; ``G80`` for none.
+        refused_letters: letters that are known but not supported, with their meaning.
+        extra_axes: letters of further axes whose positions are tracked and reported.
+        whole_block_numbers: block numbers (N) must be whole numbers.
+        corner_letters: words that chamfer or round the corner between two feed motions.
+        increment_letters: letters whose numbers count least input increments if they have no decimal point and the
+            setting `decimal_point` is ``increment``; computed numbers are rounded to that increment.
+        whole_letters: letters whose computed numbers are rounded to whole numbers.
+        power_on_motion: motion code that is active at the start of a program; ``G80`` for none.
         macro: its variables, expressions and jumps.
         cycles: its canned cycles, None for none.
-        compensation: how cutter compensation finds the tool's path.
-        not_compensated: phases whose codes are refused while cutter compensation is on.
-        compensation_defaults_to_tool: G41/G42 without D take the radius of the tool in the spindle.
+        compensation: method of cutter compensation.
+        not_compensated: steps of a block whose codes are refused while cutter compensation is on.
+        compensation_defaults_to_tool: G41 or G42 without D uses the radius of the tool in the spindle.
         data_kinds: what G10 writes for each L.
-        additional_by_l20: G10 L20 writes additional work offsets; else the offset under which the tool is at the
-            programmed position.
-        tool_defaults_to_present: M6 without any T puts in the tool that is in; else it is refused.
-        file_end_returns: a subprogram's file that ends without M99 returns; else it is refused.
-        subprograms: O words begin programs that M98 calls.
+        additional_by_l20: G10 L20 sets additional work offsets; else it sets the work offset so that the present tool
+            position gets the given coordinates.
+        tool_defaults_to_present: M6 before any T keeps the tool in the spindle; else it is refused.
+        file_end_returns: a subprogram file may end without M99; else this is refused.
+        subprograms: O words start subprograms that M98 calls.
         packed_calls: M98 P31000 calls O1000 three times.
-        explicit_code_moves: a block with a motion code and no axis words is a motion to where the tool is.
-        power_on_return_to_r: G99 holds before the program states otherwise.
-        tools_must_be_known: T names a row of the tool table, where one is given.
-        dwell: words of G4.
-        length_word_is_modal: an H without G43 changes the active length offset, and G43 without H uses the last one.
-        length_defaults_to_tool: G43 without H, or with H0, takes the entry of the tool in the spindle.
-        length_moves_all_axes: a tool offset has x and y besides its length.
-        incremental_adds_length: with G91 a Z word after a change of the length offset moves by the change too.
-        one_shot_with_motion: G0 to G3 in a block with G28 only sets the mode; else such a block is refused.
-        machine_moves_rapid: G53 always moves at rapid; else G0 or G1 must be active and decides.
-        reference_all_axes: G28 without axes returns all of them; else it is refused.
-        reference_cancels_length: G28 and G30 end the tool length offset.
-        additional_offsets: how many additional work offsets there are.
-        tool_variables: system variables of the tool offset table: first number, count and column.
-        common_shift_variables: what #5201 and on are: the external work offset, or the shift of G52.
-        first_alarm: number of the alarm that #3000 = 0 would raise.
-        helix_feed_along_arc: F of a helix is the feed along its arc in the plane; else along its path.
-        shift_is_rotated: G92 and G52 share one shift, and it lies inside the work offset's rotation.
-        semicolon_ends_block: a semicolon is an end of block, so words after it are the next block.
-        leader: text before the first percent sign is a leader to be skipped, wherever that percent sign is.
-        arc_tolerance: for arcs with a programmed centre.
-        radius_tolerance_mm: by how much an R may be shorter than half the chord.
+        explicit_code_moves: a motion code without axis words is a motion of length 0.
+        power_on_return_to_r: G99 is active at the start of a program, else G98.
+        tools_must_be_known: T must be in the tool table, if one is given.
+        dwell: words of G4, and the time that one unit of each stands for.
+        length_word_is_modal: H without G43 changes the active length offset, and G43 without H uses the last H.
+        length_defaults_to_tool: G43 without H, or with H0, uses the offset of the tool in the spindle.
+        length_moves_all_axes: a tool length offset also has x and y components.
+        incremental_adds_length: with G91, the first Z word after a change of length offset also moves by that change.
+        one_shot_with_motion: G0 to G3 in a block with G28 only sets the motion mode; else such a block is refused.
+        machine_moves_rapid: G53 always moves at rapid; else it follows G0 or G1, one of which must be active.
+        reference_all_axes: G28 without axis words returns all axes; else it is refused.
+        reference_cancels_length: G28 and G30 cancel the tool length offset.
+        additional_offsets: number of additional work offsets.
+        tool_variables: system variables of the columns of the tool offset table.
+        common_shift_variables: meaning of #5201 and following: ``external`` work offset, or ``local`` shift of G52.
+        first_alarm: added to the value of #3000 to give the alarm number.
+        helix_feed_along_arc: F of a helix is the feed along its arc in the plane; else along the helix.
+        shift_is_rotated: G92 and G52 share one shift, which is rotated with the work offset.
+        semicolon_ends_block: a semicolon is an end of block (EOB): words after it belong to the next block; else it
+            starts a comment.
+        leader: text before the first percent sign is a leader and is skipped.
+        arc_tolerance: largest difference of the radii at the two ends of an arc with I, J, K.
+        radius_tolerance_mm: largest amount by which R may be shorter than half the chord.
     """
 
     name: str

@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 from gcode.cycles import FANUC_CYCLES
-from gcode.dialects.codes import CYCLES, FULL, Table, executed, neutral, noticed, owning, refused
+from gcode.dialects.codes import CYCLE_LETTERS, FULL, Table, cycle_meanings, executed, neutral, noticed, owning, refused
 from gcode.dialects.dialect import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.macro_language import FANUC_MACRO
 
 FIVE_AXIS = "five-axis machining"
-#: Words of every cycle: hole, levels, peck, dwell or shift, repeats.
-CYCLE_LETTERS = "XYZRQPIJKL"
 
 CODES: Table = {
     **FULL,
     **owning("one-shot", "dwell", {"G4": "dwell"}, "PX"),
-    **owning("one-shot", "data", {"G10": "offset data setting"}, "LPRXYZQIJABCDHTNK"),
-    **neutral("data", {"G11": "offset data setting cancel"}),
+    **owning("one-shot", "data", {"G10": "programmable data input"}, "LPRXYZQIJABCDHTNK"),
+    **neutral("data", {"G11": "programmable data input cancel"}),
     **executed("length", "length", {"G44": "tool length offset, negative"}, "H"),
     **executed("spindle", "spindle_off", {"M19": "spindle orientation"}, "RPQ"),
     **executed("cycle", "modes", {"G80": "canned cycle cancel"}),
-    **executed("cycle", "modes", CYCLES, CYCLE_LETTERS),
-    **executed("polar", "transform_off", {"G15": "polar coordinates cancel"}),
-    **executed("polar", "transform", {"G16": "polar coordinates"}),
+    **executed("cycle", "modes", cycle_meanings(FANUC_CYCLES), CYCLE_LETTERS),
+    **executed("polar", "transform_off", {"G15": "polar coordinate command cancel"}),
+    **executed("polar", "transform", {"G16": "polar coordinate command"}),
     **executed("scaling", "transform_off", {"G50": "scaling cancel"}),
     **owning("scaling", "transform", {"G51": "scaling"}, "XYZPIJK"),
     **executed("mirror", "transform_off", {"G50.1": "mirror image cancel"}, "XYZ"),
@@ -30,28 +28,30 @@ CODES: Table = {
     **owning("rotation", "transform", {"G68": "coordinate rotation"}, "XYZR"),
     **executed("work-offset", "work_offset", {f"G{n}": f"work offset {n - 53}" for n in range(54, 60)}, "P"),
     **executed("work-offset", "work_offset", {"G54.1": "additional work offset"}, "P"),
-    **owning("one-shot", "shift", {"G92": "coordinate system setting, spindle speed limit"}, "XYZ"),
+    **owning("one-shot", "shift", {"G92": "coordinate system setting, or spindle speed limit"}, "XYZ"),
     **owning("one-shot", "shift", {"G92.1": "workpiece coordinate system preset"}, "XYZ"),
     **owning("one-shot", "reference", {"G27": "reference point check"}, "XYZ"),
     **owning("one-shot", "reference", {"G29": "return from the reference point"}, "XYZ"),
     **owning("one-shot", "reference", {"G60": "single-direction positioning"}, "XYZ"),
     **owning("call", "call", {"G65": "macro call", "G66": "modal macro call", "G66.1": "modal macro call"}, "*"),
     **executed("call", "call", {"G67": "modal macro call cancel"}),
-    **executed("call", "call", {"M198": "subprogram call from external memory"}, "PL"),
+    **executed("call", "call", {"M198": "subprogram call from an external device"}, "PL"),
     **neutral("polar-interpolation", {"G13.1": "polar coordinate interpolation cancel"}),
     **noticed("exact-stop", {"G9": "exact stop in this block"}),
-    **noticed("path", {"G61": "exact stop", "G62": "corner override", "G63": "tapping mode", "G64": "cutting mode"}),
+    **noticed(
+        "path", {"G61": "exact stop", "G62": "automatic corner override", "G63": "tapping mode", "G64": "cutting mode"}
+    ),
     **noticed("look-ahead", {"G5": "high-speed cycle cutting", "G8": "look-ahead control"}, "P"),
     **noticed("look-ahead", {"G5.1": "AI contour control"}, "PQR"),
     **noticed("stroke-check", {"G23": "stored stroke check off"}),
-    **noticed("speed-check", {"G25": "spindle speed check off"}),
+    **noticed("speed-check", {"G25": "spindle speed fluctuation detection off"}),
     **executed("rigid-tap", "rigid_tapping", {"M29": "rigid tapping mode"}),
     **noticed("clamp", {"M10": "clamp", "M11": "unclamp"}),
     **refused(
         "rotation", {"G68.2": f"tilted working plane: {FIVE_AXIS}", "G68.3": f"tilted working plane: {FIVE_AXIS}"}
     ),
     **refused("polar-interpolation", {"G12.1": "polar coordinate interpolation"}),
-    **refused("length", {"G43.1": f"tool axis length offset: {FIVE_AXIS}"}),
+    **refused("length", {"G43.1": f"tool length offset along the tool axis: {FIVE_AXIS}"}),
     **refused("length", {"G43.4": f"tool centre point control: {FIVE_AXIS}"}),
     **refused("length", {"G43.5": f"tool centre point control: {FIVE_AXIS}"}),
     **refused(
@@ -60,12 +60,13 @@ CODES: Table = {
     **refused("motion", {"G2.2": "involute", "G3.2": "involute", "G6.2": "NURBS", "G33": "threading"}),
     **refused("motion", {"G2.3": "exponential", "G3.3": "exponential", "G2.4": "3-D arc", "G3.4": "3-D arc"}),
     **refused("one-shot", {"G7.1": "cylindrical interpolation", "G107": "cylindrical interpolation"}),
-    **refused("one-shot", {"G31": "skip function: where it ends depends on a measurement"}),
-    **refused("one-shot", {"G37": "automatic tool length measurement: it depends on a measurement"}),
+    **refused("one-shot", {"G31": "skip function: its end depends on a measurement"}),
+    **refused("one-shot", {"G37": "automatic tool length measurement: its end depends on a measurement"}),
     **refused("one-shot", {"G53.1": f"tool axis direction control: {FIVE_AXIS}"}),
-    **refused("one-shot", {f"G{n}": "tool offset in one block" for n in range(45, 49)}),
+    **refused("one-shot", {"G45": "tool offset increase", "G46": "tool offset decrease"}),
+    **refused("one-shot", {"G47": "tool offset double increase", "G48": "tool offset double decrease"}),
     **refused("stroke-check", {"G22": "stored stroke check on"}),
-    **refused("speed-check", {"G26": "spindle speed check on"}),
+    **refused("speed-check", {"G26": "spindle speed fluctuation detection on"}),
 }
 
 ROTARY = {letter: f"{letter} is a rotary axis" for letter in "ABC"}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from gcode.dialects.codes import COMMON, CYCLES, Table, executed, neutral, noticed, owning, refused
+from gcode.cycles import FANUC_CYCLES
+from gcode.dialects.codes import COMMON, Table, cycle_meanings, executed, neutral, noticed, owning, refused
 from gcode.dialects.linuxcnc import LINUXCNC
 from gcode.dialects.macro_language import NO_MACRO
 
@@ -15,13 +16,13 @@ CODES: Table = {
     **executed("one-shot", "reference", {"G28.1": "store the reference point"}),
     **executed("one-shot", "reference", {"G30.1": "store the second reference point"}),
     **owning("one-shot", "reference", {"G30": "return to the second reference point"}, "XYZ"),
-    **executed("one-shot", "shift", {"G92.1": "shift to 0"}),
+    **executed("one-shot", "shift", {"G92.1": "cancel the G92 offset and clear it"}),
     **owning("length", "length", {"G43.1": "dynamic tool length offset"}, "Z"),
     **neutral("compensation", {"G40": "cutter compensation cancel"}),
     **noticed("path", {"G61": "exact path"}),
     **noticed("override", {"M56": "parking motion override"}, "P"),
-    **refused("motion", {f"G38.{n}": "probing: where it ends depends on a measurement" for n in (2, 3, 4, 5)}),
-    **refused("motion", CYCLES),
+    **refused("motion", {f"G38.{n}": "probing: its end depends on a measurement" for n in (2, 3, 4, 5)}),
+    **refused("motion", cycle_meanings(FANUC_CYCLES)),
     **refused("tool-change", {"M6": "tool change"}),
 }
 
@@ -29,7 +30,7 @@ GRBL = replace(
     LINUXCNC,
     name="grbl",
     codes=CODES,
-    refused_letters={letter: f"{letter} is an axis that GRBL has not" for letter in "ABCUVW"},
+    refused_letters={letter: f"{letter} is an axis that GRBL does not have" for letter in "ABCUVW"},
     extra_axes="",
     power_on_motion="G0",
     power_on_return_to_r=False,

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from gcode.cycles import LINUXCNC_CYCLES
-from gcode.dialects.codes import FULL, Table, executed, noticed, owning, refused
+from gcode.dialects.codes import FULL, Table, cycle_meanings, executed, noticed, owning, refused
 from gcode.dialects.dialect import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.macro_language import LINUXCNC_MACRO
 
 _ALL = "XYZABC"
 #: Axis words of a motion, and the polar ones.
 _TARGET = _ALL + "@^"
-_DRILLING = {code: cycle.meaning for code, cycle in LINUXCNC_CYCLES.cycles.items()}
 
 CODES: Table = {
     **FULL,
     **executed("motion", "modes", {"G0": "rapid positioning", "G1": "straight feed"}, _TARGET),
     **executed("motion", "modes", {"G2": "clockwise arc", "G3": "counter-clockwise arc"}, _TARGET + "IJKRP"),
-    **executed("motion", "modes", _DRILLING, "XYZ@^RQPLIJK"),
+    **executed("motion", "modes", cycle_meanings(LINUXCNC_CYCLES), "XYZ@^RQPLIJK"),
     **executed("motion", "modes", {"G5": "cubic spline"}, "XYIJPQ"),
     **executed("motion", "modes", {"G5.1": "quadratic spline"}, "XYIJ"),
     **executed("motion", "modes", {"G33": "spindle-synchronised motion"}, "XYZK"),
@@ -24,16 +23,17 @@ CODES: Table = {
     **executed("motion-cancel", "modes", {"G80": "motion cancel"}),
     **executed("one-shot", "dwell", {"G4": "dwell"}, "P"),
     **executed("diameter", "modes", {"G7": "diameter mode", "G8": "radius mode"}),
-    **owning("one-shot", "data", {"G10": "offset data setting"}, "LPRIJQ" + _ALL),
+    **owning("one-shot", "data", {"G10": "set offsets"}, "LPRIJQ" + _ALL),
     **owning("one-shot", "reference", {"G28": "return to the reference point"}, _ALL),
     **owning("one-shot", "reference", {"G30": "return to the second reference point"}, _ALL),
     **executed("one-shot", "reference", {"G28.1": "store the reference point"}),
     **executed("one-shot", "reference", {"G30.1": "store the second reference point"}),
     **owning("one-shot", "shift", {"G52": "local coordinate system"}, _ALL),
     **owning("one-shot", "shift", {"G92": "coordinate system setting"}, _ALL),
-    **executed("one-shot", "shift", {"G92.1": "shift to 0", "G92.2": "shift off", "G92.3": "shift on again"}),
-    **executed("compensation", "radius", {"G41.1": "dynamic compensation left"}, "D"),
-    **executed("compensation", "radius", {"G42.1": "dynamic compensation right"}, "D"),
+    **executed("one-shot", "shift", {"G92.1": "cancel the G92 offset and clear it"}),
+    **executed("one-shot", "shift", {"G92.2": "suspend the G92 offset", "G92.3": "resume the G92 offset"}),
+    **executed("compensation", "radius", {"G41.1": "dynamic cutter compensation left"}, "D"),
+    **executed("compensation", "radius", {"G42.1": "dynamic cutter compensation right"}, "D"),
     **owning("length", "length", {"G43.1": "dynamic tool length offset"}, "XYZ"),
     **executed("length", "length", {"G43.2": "additional tool length offset"}, "H"),
     **executed("work-offset", "work_offset", {f"G59.{n}": f"work offset {n + 6}" for n in (1, 2, 3)}),
@@ -44,22 +44,24 @@ CODES: Table = {
     **executed("coolant", "coolant_on", {"M7": "mist coolant", "M8": "flood coolant"}),
     **executed("coolant", "coolant_off", {"M9": "coolant off"}),
     **executed("spindle", "spindle_off", {"M19": "spindle orientation"}, "RPQ$"),
-    **executed("stop", "stop", {"M60": "pallet change stop"}),
+    **executed("stop", "stop", {"M60": "pallet change pause"}),
     **executed("tool-change", "tool_change", {"M61": "set the current tool"}, "Q"),
-    **executed(
-        "state", "state", {"M70": "save state", "M71": "drop state", "M72": "restore state", "M73": "save state"}
-    ),
+    **executed("state", "state", {"M70": "save state", "M71": "discard the saved state", "M72": "restore state"}),
+    **executed("state", "state", {"M73": "save state, restored on return"}),
     **noticed("path", {"G61": "exact path", "G61.1": "exact stop"}),
     **noticed("path", {"G64": "path blending"}, "PQ"),
-    **noticed("override", {"M50": "feed override", "M51": "speed override", "M53": "feed stop"}, "P"),
-    **noticed("override", {"M52": "adaptive feed"}, "P"),
-    **noticed("output", {"M62": "output on", "M63": "output off", "M64": "output on", "M65": "output off"}, "P", "P"),
-    **noticed("output", {"M67": "analog output", "M68": "analog output"}, "EQ", "EQ"),
+    **noticed("override", {"M50": "feed override", "M51": "spindle speed override", "M53": "feed hold control"}, "P"),
+    **noticed("override", {"M52": "adaptive feed control"}, "P"),
+    **noticed("output", {"M62": "digital output on, with the motion"}, "P", "P"),
+    **noticed("output", {"M63": "digital output off, with the motion"}, "P", "P"),
+    **noticed("output", {"M64": "digital output on, immediately"}, "P", "P"),
+    **noticed("output", {"M65": "digital output off, immediately"}, "P", "P"),
+    **noticed("output", {"M67": "analog output, with the motion", "M68": "analog output, immediately"}, "EQ", "EQ"),
     **refused("motion", LINUXCNC_CYCLES.absent),
     **refused("motion", {"G5.2": "NURBS", "G5.3": "NURBS end", "G6.2": "NURBS", "G6.3": "NURBS end"}),
-    **refused("motion", {f"G38.{n}": "probing: where it ends depends on a measurement" for n in (2, 3, 4, 5)}),
+    **refused("motion", {f"G38.{n}": "probing: its end depends on a measurement" for n in (2, 3, 4, 5)}),
     **refused("motion", {"G70": "lathe finishing", "G71": "lathe roughing", "G72": "lathe facing"}),
-    **refused("input", {"M66": "wait on an input: it depends on a machine"}),
+    **refused("input", {"M66": "wait on an input: its effect depends on the machine"}),
 }
 
 LINUXCNC = Dialect(

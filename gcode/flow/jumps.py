@@ -70,8 +70,8 @@ def jump_to_label(session: Session, block: ParsedBlock, value: float | None, col
     level = session.level
     spot = level.program.label(int(value), level.spot.offset - 1)
     if spot is None:
-        problem = f"a jump to N{int(value)}, which this program does not have"
-        raise block.error_at(column, "unknown-label", problem, "N and that number at the start of a line")
+        problem = f"a jump to N{int(value)}, which is not in this program"
+        raise block.error_at(column, "unknown-label", problem, "a block that starts with this number")
     if spot.offset < level.spot.offset:
         session.count_jump(block.place)
     level.jump(spot)

@@ -124,8 +124,8 @@ def _call_label(session: Session, block: ParsedBlock, request: CallRequest) -> N
     number = request.number or 0
     spot = level.program.label(number, level.spot.offset - 1)
     if spot is None:
-        problem = f"a call of N{number}, which this program does not have"
-        raise block.error(request.word, "unknown-label", problem, "N and that number at the start of a line")
+        problem = f"a call of N{number}, which is not in this program"
+        raise block.error(request.word, "unknown-label", problem, "a block that starts with this number")
     if request.count < 1:
         return
     session.enter(

@@ -103,7 +103,7 @@ def _segments(place: Place, dialect: Dialect) -> list[_Segment]:
             if dialect.macro.named and 0 <= inner < end:
                 raise GcodeError(_at(place, inner + 1), "nested-comment", "( inside a comment", "one comment at a time")
             if end < 0:
-                raise GcodeError(_at(place, position + 1), "unclosed-comment", "a comment without its end", ")")
+                raise GcodeError(_at(place, position + 1), "unclosed-comment", "a comment that is not closed", ")")
             current.comments.append(text[position + 1 : end])
             position = end
         elif character == ";" and not dialect.semicolon_ends_block:
@@ -273,7 +273,9 @@ def _function_follows(source: Source, position: int) -> bool:
 def _too_large(place: Place, index: int, shown: str) -> GcodeError:
     shown = shown if len(shown) <= 25 else shown[:25] + "..."
     problem = f"{shown} is out of range"
-    return GcodeError(_at(place, index + 1), "number-too-large", problem, f"at most {MAX_VALUE:.0f} in size")
+    return GcodeError(
+        _at(place, index + 1), "number-too-large", problem, f"an absolute value of at most {MAX_VALUE:.0f}"
+    )
 
 
 def _percent(place: Place) -> ParsedBlock:

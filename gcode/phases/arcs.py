@@ -70,7 +70,7 @@ def _ends(state: State, command: Command) -> _Ends:
     if frame.matrix is None and not state.modes.polar:
         return _Ends(state.position_mm, programmed_end(state, command), frame.zero_mm)
     if frame.plane_scale(state.machine.plane) is None:
-        problem = f"{state.modes.motion} while the {_plane(state)} is scaled unevenly or turned out of its plane"
+        problem = f"{state.modes.motion} while the {_plane(state)} has two scale factors or is rotated out of its plane"
         raise command.block.error(None, "arc-uneven-scale", problem, "straight motions, or an even scale")
     return _Ends(state.program_mm, program_end(state, command), (0.0, 0.0, 0.0))
 
@@ -222,8 +222,10 @@ def _centre_from_radius(state: State, command: Command, ends: _Ends, word: Word)
         problem = f"{word.text} with the end of the arc at its start"
         raise command.block.error(word, "arc-no-chord", problem, "a centre by I, J, K for a full circle")
     if chord / 2.0 - abs(radius) > state.control.dialect.radius_tolerance_mm:
-        problem = f"{word.text} is too small for an arc over {chord:.4f} mm"
-        raise command.block.error(word, "arc-radius-too-small", problem, f"at least {chord / 2.0:.4f} mm in size")
+        problem = f"{word.text} is too small for a chord of {chord:.4f} mm"
+        raise command.block.error(
+            word, "arc-radius-too-small", problem, f"an absolute value of at least {chord / 2.0:.4f} mm"
+        )
     height = math.sqrt(max(radius * radius - chord * chord / 4.0, 0.0))
     side = math.copysign(1.0, radius) * _TURNS[state.modes.motion]
     centre = list(start)

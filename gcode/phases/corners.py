@@ -174,7 +174,7 @@ def _reaches(segment: Segment, point: complex) -> bool:
 
 
 def _too_large(before: Segment, word: str, size: float, what: str) -> GcodeError:
-    problem = f"{word}{size:g}: a corner of {size:.4f} mm has no space on {what}"
+    problem = f"{word}{size:g}: a corner of {size:.4f} mm does not fit on {what}"
     return _error(before.motion, "corner-too-large", problem, "a smaller size or longer motions")
 
 

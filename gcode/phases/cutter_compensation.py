@@ -85,8 +85,8 @@ def _row(state: State, command: Command, number: int, word: Word | None) -> Tool
     if number == 0 or state.control.settings.tools is None:
         return ToolOffset()
     known = ", ".join(f"D{n}" for n in sorted(table)) or "none is given"
-    problem = f"cutter compensation {number} is not in the table"
-    raise command.block.error(word, "unknown-radius", problem, f"one of the table: {known}")
+    problem = f"cutter radius offset {number} is not in the tool table"
+    raise command.block.error(word, "unknown-radius", problem, f"one from the table: {known}")
 
 
 def _on(state: State, command: Command, side: compensation.Hand, radius_mm: float, word: Word) -> State:

@@ -45,7 +45,7 @@ def drill(state: State, command: Command) -> Result:
         problem = f"{state.modes.motion} while cutter compensation is on"
         raise command.block.error(None, "compensation-cycle", problem, "G40 before it")
     if not state.frame.keeps_lengths:
-        problem = f"{state.modes.motion} while lengths are scaled, which controls do to some words of a cycle only"
+        problem = f"{state.modes.motion} while scaling is active; controls scale only some words of a cycle"
         raise command.block.error(None, "cycle-scaled", problem, "G50 before it")
     i, j, k = PLANE_AXES[state.machine.plane]
     here = state.program_mm

@@ -40,8 +40,8 @@ def programmed_end(state: State, command: Command, *, adds_length: bool = True) 
 
 
 def _no_offset(state: State, command: Command) -> Exception:
-    problem = f"work offset {state.machine.wcs} is not given"
-    expected = f"one of the machine's offsets: {known_offsets(state)}"
+    problem = f"work offset {state.machine.wcs} is not defined"
+    expected = f"one of the defined offsets: {known_offsets(state)}"
     return command.block.error(None, "unknown-work-offset", problem, expected)
 
 
@@ -85,7 +85,9 @@ def _from_polar(state: State, command: Command, here: Point, end: list[float]) -
     radius, angle = math.hypot(u, v), math.degrees(math.atan2(v, u))
     if AXES[i] in words and not modes.absolute and radius > SAME_POSITION_MM:
         word = words[AXES[i]]
-        problem = f"{word.text} as an incremental radius away from the polar origin, which controls take differently"
+        problem = (
+            f"{word.text} as an incremental radius not from the polar origin, which controls interpret differently"
+        )
         raise command.block.error(word, "polar-incremental", problem, "G90, or G16 again where the tool is")
     if AXES[i] in words:
         radius = _length(state, words[AXES[i]]) + (0.0 if modes.absolute else radius)

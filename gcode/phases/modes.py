@@ -193,7 +193,9 @@ def _check_tool(state: State, command: Command, word: Word, number: int) -> None
         return
     if state.control.dialect.tools_must_be_known:
         known = ", ".join(f"T{n}" for n in sorted(tools)) or "none is given"
-        raise command.block.error(word, "unknown-tool", f"{word.text} is not in the tool table", f"one of it: {known}")
+        raise command.block.error(
+            word, "unknown-tool", f"{word.text} is not in the tool table", f"one from the table: {known}"
+        )
 
 
 def change_tool(state: State, command: Command) -> Result:

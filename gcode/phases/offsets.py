@@ -36,8 +36,8 @@ def set_work_offset(state: State, command: Command) -> Result:
     elif name == "G154":
         raise command.block.error(use.word, "missing-word", f"{use.word.text} without P", "P and a number")
     if name not in state.setup.offsets:
-        problem = f"work offset {name} is not given"
-        expected = f"one of the machine's offsets: {known_offsets(state)}"
+        problem = f"work offset {name} is not defined"
+        expected = f"one of the defined offsets: {known_offsets(state)}"
         raise command.block.error(use.word, "unknown-work-offset", problem, expected)
     return state.with_machine(wcs=name).reframed(), ()
 
@@ -135,8 +135,8 @@ def _length_row(state: State, command: Command, number: int | None) -> ToolOffse
         return ToolOffset()
     if number not in table:
         known = ", ".join(f"H{n}" for n in sorted(table)) or "none is given"
-        problem = f"tool length offset {number} is not in the table"
-        raise command.block.error(word, "unknown-length-offset", problem, f"one of the table: {known}")
+        problem = f"tool length offset {number} is not in the tool table"
+        raise command.block.error(word, "unknown-length-offset", problem, f"one from the table: {known}")
     return table[number]
 
 

@@ -87,8 +87,8 @@ def _reference_point(state: State, command: Command) -> tuple[Point, Extra]:
         return ((0.0, 0.0, 0.0), NO_EXTRA)
     use = command.of_phase("reference")[0].word
     known = ", ".join(f"P{n}" for n in sorted(points) if n > 1) or "none is given"
-    problem = f"{use.text}: reference point {number} is not given"
-    raise command.block.error(word or use, "unknown-reference", problem, f"one of the machine's: {known}")
+    problem = f"{use.text}: reference point {number} is not defined"
+    raise command.block.error(word or use, "unknown-reference", problem, f"one of the defined ones: {known}")
 
 
 def _check(state: State, command: Command) -> Result:
@@ -98,7 +98,9 @@ def _check(state: State, command: Command) -> Result:
     point, _ = _reference_point(state, command)
     for axis, there, here in zip(AXES, point, state.gauge_mm, strict=True):
         if axis in named and abs(there - here) > SAME_POSITION_MM:
-            problem = f"{command.words[axis].text} ends at {here:.4f} mm of the machine, not at the reference point"
+            problem = (
+                f"{command.words[axis].text} ends at {here:.4f} mm in machine coordinates, not at the reference point"
+            )
             raise command.block.error(command.words[axis], "reference-missed", problem, f"{there:.4f} mm")
     return state, events
 

@@ -21,7 +21,7 @@ def tool_change(control: ControlMemory, event: ToolChange) -> Iterator[str]:
     if rule is None or rule.status is not Status.EXECUTED:
         if event.tool == control.tool:
             return
-        problem = f"a change to tool {event.tool}, which {control.options.dialect.name} does not have"
+        problem = f"a change to tool {event.tool}, and {control.options.dialect.name} has no tool change"
         raise control.error(event, "tool-change", problem, "one tool, named by WriteOptions.tool")
     control.tool, control.direction, control.unsure = event.tool, 0, True
     yield control.line(f"T{event.tool}", "M6")

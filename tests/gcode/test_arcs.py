@@ -122,13 +122,14 @@ def test_the_programmed_centre_is_kept_within_the_tolerance(motions) -> None:
         ("G2 I0 J0", "t.nc:2:1: an arc of radius 0; expected a centre away from the start [arc-zero-radius]"),
         ("G2 X0 Y0 R5", "t.nc:2:10: R5 with the end of the arc at its start; expected a centre by I, J, K for a full "
          "circle [arc-no-chord]"),
-        ("G2 X10 R4.9", "t.nc:2:8: R4.9 is too small for an arc over 10.0000 mm; expected at least 5.0000 mm in size "
-         "[arc-radius-too-small]"),
-        ("G2 X10 R0", "t.nc:2:8: R0 is too small for an arc over 10.0000 mm; expected at least 5.0000 mm in size "
-         "[arc-radius-too-small]"),
+        ("G2 X10 R4.9", "t.nc:2:8: R4.9 is too small for a chord of 10.0000 mm; expected an absolute value of at least "
+         "5.0000 mm [arc-radius-too-small]"),
+        ("G2 X10 R0", "t.nc:2:8: R0 is too small for a chord of 10.0000 mm; expected an absolute value of at least "
+         "5.0000 mm [arc-radius-too-small]"),
         ("G2 X20 I9.9 J0", "t.nc:2:8: the arc's radius is 9.9000 mm at its start and 10.1000 mm at its end, with "
          "incremental centre I9.9 J0; expected radii within 0.05 mm of each other [arc-radius]"),
-        ("G2 X1 I1 P2", "t.nc:2:10: P2 belongs to no code in this block or active [unused-word]"),
+        ("G2 X1 I1 P2", "t.nc:2:10: P2 is not used by any code in this block or by the active motion code "
+         "[unused-word]"),
     ],
 )  # fmt: skip
 def test_refusals(text: str, message: str, refusal) -> None:

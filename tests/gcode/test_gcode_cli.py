@@ -179,7 +179,7 @@ def test_a_program_is_written_again_for_another_control(cli: Cli, nc: Path, tmp_
 def test_what_cannot_be_written_leaves_no_file(cli: Cli, nc: Path, tmp_path: Path) -> None:
     code, out, err = cli("rewrite", nc, "-o", tmp_path / "new.nc", "--to", "grbl")
     assert (code, out) == (1, "")
-    assert err.startswith(f"error: {nc}:3:1: a change to tool 3, which grbl does not have; ")
+    assert err.startswith(f"error: {nc}:3:1: a change to tool 3, and grbl has no tool change; ")
     assert [path.name for path in tmp_path.iterdir()] == ["part.nc"]
 
 

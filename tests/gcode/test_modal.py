@@ -82,8 +82,8 @@ def test_two_codes_of_a_group_are_refused(dialect: Dialect) -> None:
             if shared:
                 error = refusal_of(resolve, initial_state(dialect, MachineSettings()), f"{first.code} {second.code}")
                 assert str(error) == (
-                    f"t.nc:1:{len(first.code) + 2}: {first.code} and {second.code} are both of the modal group "
-                    f"{shared[0]}; expected one code of a group in a block [group-conflict]"
+                    f"t.nc:1:{len(first.code) + 2}: {first.code} and {second.code} are both in the modal group "
+                    f"{shared[0]}; expected one code of a group per block [group-conflict]"
                 )
 
 
@@ -94,19 +94,19 @@ def test_two_codes_of_a_group_are_refused(dialect: Dialect) -> None:
         ("G0 M123", "t.nc:1:4: M123 is not a code of the fanuc dialect [unknown-code]"),
         ("G1.5", "t.nc:1:1: G1.5 is not a code of the fanuc dialect [unknown-code]"),
         ("G-1", "t.nc:1:1: G-1 is not a code of the fanuc dialect [unknown-code]"),
-        ("G31 Z-5 F5", "t.nc:1:1: G31 (skip function: where it ends depends on a measurement) is not supported "
+        ("G31 Z-5 F5", "t.nc:1:1: G31 (skip function: its end depends on a measurement) is not supported "
          "[unsupported-code]"),
-        ("G1 X1 X2", "t.nc:1:7: X is given twice: X1 and X2; expected one X in a block [repeated-word]"),
+        ("G1 X1 X2", "t.nc:1:7: X is given twice: X1 and X2; expected one X per block [repeated-word]"),
         ("M98 P10 L3", "t.nc:1:1: program O10 is not found; expected O10 in this file, or a file O0010 in the same "
          "folder or on the search path [unknown-program]"),
         ("G0 A90", "t.nc:1:4: A90: A is a rotary axis, which is not supported [unsupported-word]"),
         ("G0 X1 U5", "t.nc:1:7: U5: U is a parallel axis, which is not supported [unsupported-word]"),
         ("G1 X1 ,C2 F1", "t.nc:1:1: a corner at the end of the program; expected a feed motion in the plane after it "
          "[corner-no-motion]"),
-        ("G0 X1 ,C2", "t.nc:1:7: ,C2 belongs to no code in this block or active [unused-word]"),
-        ("G0 X1 P5", "t.nc:1:7: P5 belongs to no code in this block or active [unused-word]"),
-        ("G0 X1 I5", "t.nc:1:7: I5 belongs to no code in this block or active [unused-word]"),
-        ("G4 X1 Y1", "t.nc:1:7: Y1 belongs to no code in this block or active [unused-word]"),
+        ("G0 X1 ,C2", "t.nc:1:7: ,C2 is not used by any code in this block or by the active motion code [unused-word]"),
+        ("G0 X1 P5", "t.nc:1:7: P5 is not used by any code in this block or by the active motion code [unused-word]"),
+        ("G0 X1 I5", "t.nc:1:7: I5 is not used by any code in this block or by the active motion code [unused-word]"),
+        ("G4 X1 Y1", "t.nc:1:7: Y1 is not used by any code in this block or by the active motion code [unused-word]"),
         ("N1.5", "t.nc:1:1: N1.5 is not a whole number of 0 or more; expected N0, 1, 2... [bad-value]"),
         ("T-1", "t.nc:1:1: T-1 is not a whole number of 0 or more; expected T0, 1, 2... [bad-value]"),
         ("F-1", "t.nc:1:1: F-1 is negative; expected F of 0 or more [bad-value]"),

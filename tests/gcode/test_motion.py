@@ -65,10 +65,10 @@ def test_work_offsets(motions, refusal) -> None:
     offsets = {"G54": (1.0, 2.0, 3.0), "G59": (100.0, 0.0, 0.0)}
     assert ends(motions("X0 Y0 Z0\nG59 X1\nG54 Y5", offsets=offsets)) == [(1, 2, 3), (101, 2, 3), (101, 7, 3)]
     assert str(refusal("G0 X1\nG57 X1", offsets=offsets)) == (
-        "t.nc:2:1: work offset G57 is not given; expected one of the machine's offsets: G54, G59 [unknown-work-offset]"
+        "t.nc:2:1: work offset G57 is not defined; expected one of the defined offsets: G54, G59 [unknown-work-offset]"
     )
     assert str(refusal("G0 X1", offsets={"G55": (0, 0, 0)})) == (
-        "t.nc:1:1: work offset G54 is not given; expected one of the machine's offsets: G55 [unknown-work-offset]"
+        "t.nc:1:1: work offset G54 is not defined; expected one of the defined offsets: G55 [unknown-work-offset]"
     )
 
 
@@ -168,9 +168,11 @@ def test_g43_alone_takes_the_offset_of_the_tool_in_linuxcnc(motions, refusal) ->
 
 
 def test_an_offset_that_is_not_in_the_table(refusal) -> None:
-    message = "t.nc:1:5: tool length offset 9 is not in the table; expected one of the table: H1, H2 "
+    message = "t.nc:1:5: tool length offset 9 is not in the tool table; expected one from the table: H1, H2 "
     assert str(refusal("G43 H9", tools=LENGTHS)) == message + "[unknown-length-offset]"
-    assert str(refusal("G43 H9", tools={})).endswith("expected one of the table: none is given [unknown-length-offset]")
+    assert str(refusal("G43 H9", tools={})).endswith(
+        "expected one from the table: none is given [unknown-length-offset]"
+    )
 
 
 def test_without_a_table_lengths_count_as_0_and_a_notice_says_so(run, motions) -> None:

@@ -100,8 +100,8 @@ MACRO = (
         ("G1 X1.2.3", "t.nc:7:4: X1.2.3 is not a number; expected digits with at most one point [bad-number]"),
         ("X.", "t.nc:7:1: X. is not a number; expected digits with at most one point [bad-number]"),
         ("X10000000000", "t.nc:7:1: X10000000000 is out of range; "
-         "expected at most 1000000000 in size [number-too-large]"),
-        ("G1 (open", "t.nc:7:4: a comment without its end; expected ) [unclosed-comment]"),
+         "expected an absolute value of at most 1000000000 [number-too-large]"),
+        ("G1 (open", "t.nc:7:4: a comment that is not closed; expected ) [unclosed-comment]"),
         ("G1 X1)", "t.nc:7:6: unexpected ')'; expected a letter and its number, or a comment [unexpected-character]"),
         ("G1 *", "t.nc:7:4: unexpected '*'; expected a letter and its number, or a comment [unexpected-character]"),
         ("G1 X²", "t.nc:7:4: X has no number; expected X and a number [missing-number]"),

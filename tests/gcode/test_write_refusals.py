@@ -63,7 +63,8 @@ END = ProgramStop(place=PLACE, optional=False, end=True)
         ),
         (
             one(lambda m: on(m, state=replace(m.state, tool=2))), {"dialect": "grbl"},
-            "a change to tool 2, which grbl does not have; expected one tool, named by WriteOptions.tool [tool-change]",
+            "a change to tool 2, and grbl has no tool change; expected one tool, named by WriteOptions.tool "
+            "[tool-change]",
         ),
         (
             one(lambda m: longer(m, 10.0, None)), {},
