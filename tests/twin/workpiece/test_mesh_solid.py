@@ -148,7 +148,7 @@ def test_text_that_is_no_stl_or_was_cut_off_is_refused(tmp_path: Path, text: byt
     with pytest.raises(MeshError) as caught:
         load_mesh(path)
     assert str(caught.value) in {
-        f"{path}: cannot be read as STL; expected a whole binary or ASCII STL file",
+        f"{path}: cannot be read as STL; expected a complete binary or ASCII STL file",
         f"{path}: holds no triangles; expected binary or ASCII STL with a closed surface",
     }
 
