@@ -143,9 +143,7 @@ class Tool(Table):
 
     number: int = Field(ge=1, description="tool number, the T word")
     name: str = Field(default="", description="human-readable name")
-    kind: Literal["flat", "ball", "bull", "taper"] = Field(
-        description="shape of the cutting part: flat end mill, ball nose, bull nose or tapered"
-    )
+    kind: Literal["flat", "ball", "bull", "taper"] = Field(description="shape of the cutting part")
     diameter_mm: float = Field(
         gt=0.0, description="diameter of the cutting part; for a taper tool, diameter at the tip"
     )

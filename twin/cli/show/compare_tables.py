@@ -69,7 +69,9 @@ def _corrections(found: Comparison) -> Table:
     for each in found.corrections:
         grid.add_row(each.kind, Text(each.text))
     if found.speed is not None:
-        grid.add_row("spindle", Text(f"{found.speed.rpm:.1f} rpm measured by its {found.speed.source}, not used"))
+        grid.add_row(
+            "spindle", Text(f"{found.speed.rpm:.1f} rpm measured from its {found.speed.source}, as a check only")
+        )
     return grid
 
 

@@ -93,7 +93,7 @@ def parse_text(
 def _layout_note(layout: Layout) -> str:
     names = {"\t": "tab", None: "white space"}
     mark = "decimal comma" if layout.decimal == "," else "decimal point"
-    return f"columns set apart by {names.get(layout.delimiter, repr(layout.delimiter))}, {mark}"
+    return f"columns separated by {names.get(layout.delimiter, repr(layout.delimiter))}, {mark}"
 
 
 @dataclass(slots=True)
