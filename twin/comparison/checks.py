@@ -61,7 +61,7 @@ def check_rate(log: ForceLog, rpm: float, teeth: int) -> Iterator[str]:
         )
     elif log.rate_hz < 10.0 * passing:
         yield (
-            f"{log.source}: {log.rate_hz / passing:.1f} samples a tooth period ({passing:g} Hz): peaks are cut off; "
+            f"{log.source}: {log.rate_hz / passing:.1f} samples per tooth period ({passing:g} Hz): peaks are cut off; "
             f"expected {10.0 * passing:g} Hz or more"
         )
 
@@ -70,8 +70,8 @@ def check_speed(log: ForceLog, found: SpindleSpeed | None, rpm: float) -> Iterat
     """The spindle ran as programmed."""
     if found is not None and abs(found.rpm / abs(rpm) - 1.0) > _SPEED_WITHIN:
         yield (
-            f"{log.source}: spindle at {found.rpm:.0f} rpm by its {found.source}, expected the run's {abs(rpm):g} rpm: "
-            "wrong run, or the override not at 100 %? Waveforms drift apart; --phase gives each window its own shift"
+            f"{log.source}: spindle at {found.rpm:.0f} rpm, from its {found.source}, expected the run's {abs(rpm):g} "
+            "rpm: wrong run, or the override not at 100 %? Waveforms drift apart; --phase aligns each window separately"
         )
 
 
@@ -88,7 +88,7 @@ def check_overlap(run: RunForces, log: ForceLog, lag_s: float) -> Gap:
         raise CompareError(
             f"{log.source}: no overlap in time: the log covers {first:.4f} to {last:.4f} s, with a lag of {lag_s:.4f} "
             f"s {first - lag_s:.4f} to {last - lag_s:.4f} s of the run, which covers {begin:.4f} to {end:.4f} s; "
-            "give the lag by --lag SECONDS, or --lag auto"
+            "give the lag with --lag SECONDS, or --lag auto"
         )
     return both
 
@@ -106,8 +106,8 @@ def check_fit(run: RunForces, log: ForceLog, score: float, likeness: float, sett
     if better > max(likeness, 0.0) + _FAR_BETTER and any(axes[a] != a for a in axes):
         turned = ", ".join(f"{a} = {axes[a]}" for a in AXES)
         yield (
-            f"{log.source}: likeness {likeness:.2f}, means included; {better:.2f} with {turned} of the log as it is "
-            f"mapped now: try {_hint(axes, log, settings)}"
+            f"{log.source}: similarity {likeness:.2f}, means included; it would be {better:.2f} with {turned} of the "
+            f"log as mapped: try {_hint(axes, log, settings)}"
         )
     elif settings.lag_s is not None and better > max(likeness, 0.0) + _FAR_BETTER:
         found = find_delay(run, log)
@@ -116,7 +116,7 @@ def check_fit(run: RunForces, log: ForceLog, score: float, likeness: float, sett
             "try --lag auto"
         )
     elif score < _POOR_FIT:
-        yield f"{log.source}: correlation {score:.2f}: the log does not look much like the run"
+        yield f"{log.source}: correlation {score:.2f}: the log does not resemble the run"
 
 
 def _hint(axes: dict[str, str], log: ForceLog, settings: CompareSettings) -> str:
@@ -144,6 +144,6 @@ def check_delay(delay: Delay, log: ForceLog) -> Iterator[str]:
     if far > FAR_RIVALS * log.duration_s:
         yield (
             f"{log.source}: {len(delay.rivals_s)} other delays fit equally well, up to {far:.3f} s away: the cut is "
-            "steady there, so that only the spindle's phase is known; of those that cover the windows the one nearest "
-            "to 0 is taken; --lag-within SECONDS narrows the search"
+            "steady there, so only the phase of the spindle is known; of the delays that cover the windows, the one "
+            "nearest to 0 is taken; --lag-within SECONDS narrows the search"
         )

@@ -53,10 +53,10 @@ def doubts(
     if r_squared < LEAST_FIT:
         yield (
             f"R2 = {r_squared:.3f}, expected above {LEAST_FIT:g}: forces do not follow the model; check map, force_on, "
-            "direction, depths, teeth and helix; a resonance of the dynamometer is left out by fit.lowpass_hz"
+            "direction, depths, teeth and helix; fit.lowpass_hz excludes a resonance of the dynamometer"
         )
     if at_bounds:
-        yield f"{', '.join(at_bounds)}: at a bound of the search; widen fit.lower and fit.upper, or find out why"
+        yield f"{', '.join(at_bounds)}: at a bound of the search; widen fit.lower and fit.upper, or check the cuts"
 
 
 def _logs(cuts: Cuts, results: Sequence[CutResult]) -> Iterator[str]:
@@ -66,12 +66,12 @@ def _logs(cuts: Cuts, results: Sequence[CutResult]) -> Iterator[str]:
     if no_air:
         yield (
             f"{', '.join(no_air)}: no air in the log, zero not corrected: "
-            "an offset of the amplifier is taken as force, mostly as edge force"
+            "an offset of the amplifier counts as force, mostly as edge force"
         )
     for r in results:
         if r.measured.samples_per_rev < _LEAST_SAMPLES * teeth:
             yield (
-                f"{r.name}: {r.measured.samples_per_rev:.2f} samples a revolution, expected more than "
+                f"{r.name}: {r.measured.samples_per_rev:.2f} samples per revolution, expected more than "
                 f"{_LEAST_SAMPLES * teeth:g} (twice the tooth-passing frequency): its mean may be off"
             )
         yield from (f"{r.name}: {note}" for note in r.measured.notes if note.startswith(SPEED_DOUBT))
@@ -85,8 +85,8 @@ def _runout(cuts: Cuts, results: Sequence[CutResult], found: bool) -> Iterator[s
     worst = max(((_unlike(r, tool.teeth), r.name) for r in results if not r.held_out), default=(0.0, ""))
     if worst[0] > _ALIKE:
         yield (
-            f"{worst[1]}: {100.0 * worst[0]:.0f} % of the force's variation does not repeat with each tooth: runout; "
-            "it lessens the contact of thin chips and biases edge coefficients; "
+            f"{worst[1]}: {100.0 * worst[0]:.0f} % of the variation of the force does not repeat with each tooth: "
+            "runout; it reduces contact in thin chips and biases the edge coefficients; "
             "find it with --method waveform --runout, or give tool.runout_mm"
         )
 
@@ -106,17 +106,17 @@ def _undetermined(cuts: Cuts, estimate: Estimate) -> Iterator[str]:
     if lost:
         straight = [c for c in cuts.cuts if c.name not in cuts.held_out and c.feed_mm_min and c.spindle_rpm]
         per_rev = {round(c.feed_mm_min / c.spindle_rpm, 9) for c in straight if c.feed_mm_min and c.spindle_rpm}
-        why = "all have one feed per tooth, and c and e need two" if len(per_rev) == 1 else "they are too much alike"
+        why = "all have the same feed per tooth, and c and e need two" if len(per_rev) == 1 else "they are too similar"
         yield (
             f"{', '.join(lost)}: not determined by these cuts ({estimate.rank} independent equations for "
             f"{int((~estimate.fixed).sum())} coefficients): {why}; add cuts, or give some in fit.fixed"
         )
     elif estimate.dof <= 0:
-        yield "as many coefficients as equations: their standard errors cannot be determined; add cuts"
+        yield "as many coefficients as equations: standard errors cannot be determined; add cuts"
     elif estimate.condition > _CONDITION:
         yield (
-            f"condition number {estimate.condition:.0f} (expected below {_CONDITION:g}): the cuts are too much alike, "
-            "errors in forces are magnified; add feeds and depths that differ more"
+            f"condition number {estimate.condition:.0f} (expected below {_CONDITION:g}): the cuts are too similar, "
+            "so errors in forces are magnified; add feeds and depths that differ more"
         )
 
 
@@ -144,7 +144,7 @@ def _implausible(estimate: Estimate, results: Sequence[CutResult]) -> Iterator[s
     if ktc < 0.0:
         yield (
             f"Ktc = {ktc:.4g} N/mm2, expected above 0: check map (signs, swapped axes), force_on, direction; "
-            "a dynamometer under the part feels the force on the workpiece"
+            "a dynamometer under the part measures the force on the workpiece"
         )
     elif math.isfinite(ktc) and not _PLAUSIBLE_KTC[0] <= ktc <= _PLAUSIBLE_KTC[1]:
         yield (

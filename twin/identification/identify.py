@@ -141,7 +141,7 @@ def _by_waveforms(cuts: Cuts, prepared: list[Prepared], fitted: list[Prepared]) 
     for p in fitted:
         if p.measured.harmonics is None:
             why = (
-                f"its log has {p.measured.samples_per_rev:.1f} samples a revolution, too few for its teeth"
+                f"its log has {p.measured.samples_per_rev:.1f} samples per revolution, too few for its teeth"
                 if p.cut.log
                 else "it has a mean force only"
             )

@@ -35,7 +35,7 @@ class CutResult:
 
     @property
     def residual_n(self) -> FloatArray:
-        """Shape (3,), measured less fitted mean; NaN on an axis that was not measured."""
+        """Shape (3,), measured minus fitted mean; NaN on an axis that was not measured."""
         return self.measured.mean_n - self.fitted_n
 
     def waveforms(self, angle_rad: FloatArray) -> tuple[FloatArray, FloatArray] | None:

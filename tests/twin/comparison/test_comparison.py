@@ -108,7 +108,7 @@ def test_a_spindle_that_runs_slower_is_told_and_each_window_finds_its_phase() ->
     log = log_of(RUN)
     slow = replace(log, t_s=frozen(log.t_s * 1.03, "t_s", (None,)), rate_hz=log.rate_hz / 1.03)
     found = compare(RUN, slow, CompareSettings(windows=WINDOWS, lag_s=0.0, phase=True))
-    assert any("spindle at 3495 rpm by its spectrum, expected the run's 3600 rpm" in w for w in found.warnings)
+    assert any("spindle at 3495 rpm, from its spectrum, expected the run's 3600 rpm" in w for w in found.warnings)
     without = compare(RUN, slow, CompareSettings(windows=WINDOWS, lag_s=0.0))
     assert found.windows[0].of("x").rms_n < 0.4 * without.windows[0].of("x").rms_n
     assert kinds(found) == ["lag", "phase", "phase"]
@@ -158,7 +158,7 @@ def test_too_few_samples_a_tooth_are_told() -> None:
     found = compare(RUN, log_of(RUN, rate_hz=200.0), CompareSettings(lag_s=0.0))
     assert any("sampled at 200 Hz, below twice the tooth-passing frequency (120 Hz)" in w for w in found.warnings)
     found = compare(RUN, log_of(RUN, rate_hz=600.0), CompareSettings(lag_s=0.0))
-    assert any("5.0 samples a tooth period" in w for w in found.warnings)
+    assert any("5.0 samples per tooth period" in w for w in found.warnings)
 
 
 def test_no_overlap_names_both_spans() -> None:

@@ -109,7 +109,7 @@ def test_undetermined_coefficients_are_warned_of_and_not_written(
     assert run(["identify", str(path)]) == 0
     said = capsys.readouterr()
     assert "not determined" in said.out
-    assert "all have one feed per tooth, and c and e need two" in said.err.replace("\n", " ")
+    assert "all have the same feed per tooth, and c and e need two" in said.err.replace("\n", " ")
     found = as_json(capsys, path, "--plot", tmp_path / "plot.png")
     assert found["coefficients"]["Ktc"] is None
     (tmp_path / "plot.png").unlink()

@@ -134,7 +134,7 @@ def test_too_few_samples_for_the_teeth(tmp_path: Path) -> None:
     cut = SIDE.cut("a") | {"log": "log.csv", "window_s": [0.5, 2.3]}
     data = {"tool": SIDE.tool(), "defaults": dict(QUARTER_TURN), "cuts": [cut]}
     found = identify(cuts_from_dict(data, tmp_path / "cuts.toml"), "mean")
-    assert any("a: 3.50 samples a revolution, expected more than 4" in w for w in found.warnings)
+    assert any("a: 3.50 samples per revolution, expected more than 4" in w for w in found.warnings)
 
 
 def test_another_speed_than_given_is_seen(tmp_path: Path) -> None:

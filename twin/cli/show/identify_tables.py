@@ -37,7 +37,7 @@ def print_identified(console: Console, cuts: Cuts, result: Identified, *, verbos
     console.print(_quality(result), "\n", markup=False, sep="")
     console.print("Correlation of the errors", style="bold")
     console.print(_correlation(result))
-    console.print("\nMean force on the tool, N: measured, and measured less fitted (Δ)", style="bold")
+    console.print("\nMean force on the tool, N: measured, and measured minus fitted (Δ)", style="bold")
     console.print(_cuts(result.cuts))
     if any(cut.measured.window_s for cut in result.cuts):
         console.print("\nEvaluation of the logs", style="bold")
