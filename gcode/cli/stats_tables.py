@@ -22,7 +22,7 @@ def print_stats(console: Console, name: str, stats: ProgramStats) -> None:
     """
     console.print(Text(name, style="bold"))
     console.print(_totals(stats))
-    for title, body in (("Tools", _tools(stats)), ("Motions", _motions(stats)), ("Space, mm", _space(stats))):
+    for title, body in (("Tools", _tools(stats)), ("Motions", _motions(stats)), ("Travel range, mm", _space(stats))):
         if body.row_count:
             console.print(f"\n[bold]{title}[/]")
             console.print(body)

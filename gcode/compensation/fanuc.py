@@ -225,7 +225,7 @@ def _arc_refused(segment: Segment, what: str) -> GcodeError:
 
 def _blind(waiting: Waiting, blocks: int) -> Notice:
     text = (
-        f"{blocks} blocks without motion in the plane of compensation follow, {BLOCKS_READ_OVER} are skipped: "
-        "the tool ends off the offset path of this block, which may gouge or leave material at the corner"
+        f"{blocks} blocks without motion in the plane of compensation follow, and the control reads past only "
+        f"{BLOCKS_READ_OVER}: the tool ends this block regardless of the corner, where it may gouge or leave material"
     )
     return Notice(place=waiting.segment.motion.place, code="compensation-look-ahead", text=text)

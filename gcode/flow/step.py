@@ -50,7 +50,9 @@ def step(state: State, block: ParsedBlock, *, first_of_program: bool = False) ->
     if block.percent:
         return _percent(state, block)
     if block.deleted:
-        return state, (Notice(place=block.place, code="block-deleted", text="block delete: not executed"),)
+        return state, (
+            Notice(place=block.place, code="block-deleted", text="block delete is on: the block is skipped"),
+        )
     if not block.words:
         return state, ()
     command = resolve(state, block)

@@ -145,7 +145,7 @@ def _return(session: Session, block: ParsedBlock, request: CallRequest) -> Itera
         if request.number is not None:
             jump_to_label(session, block, float(request.number), request.word.column)
             return
-        text = f"{request.word.text} in the main program starts it again; one pass is run"
+        text = f"{request.word.text} in the main program restarts it; one pass is run"
         yield Notice(place=block.place_of(request.word), code="round", text=text)
         session.state, events = through(
             session.state, None, (ProgramStop(place=block.place, optional=False, end=True),)

@@ -98,7 +98,7 @@ def read_parameters(path: Path | str, units: Unit = "mm") -> ParameterFile:
             continue
         number, value = _line(place)
         if number in values:
-            problem = f"parameter {number} is given twice; line {places[number].line} has it already"
+            problem = f"parameter {number} is given twice, first in line {places[number].line}"
             raise error_at(place, 0, "parameter-duplicate", problem, "each parameter once")
         values[number], places[number] = value, place
     _check_active(values, places)

@@ -74,7 +74,7 @@ class Node:
         for key, node in self.table():
             if key not in allowed:
                 near = get_close_matches(key, allowed, 1)
-                expected = f"{near[0]}, perhaps" if near else f"one of {', '.join(allowed)}"
+                expected = f"perhaps {near[0]}" if near else f"one of {', '.join(allowed)}"
                 raise node.error(f"unknown key {node.name}", expected, at_key=True)
             yield key, node
 

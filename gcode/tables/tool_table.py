@@ -65,7 +65,7 @@ def read_tool_table(path: Path | str, units: Unit = "mm") -> dict[int, ToolOffse
             continue
         number = _number(place, words)
         if number in rows:
-            problem = f"T{number} is given twice; line {lines[number]} has it already"
+            problem = f"T{number} is given twice, first in line {lines[number]}"
             raise error_at(place, words["T"][1], "tool-table-duplicate", problem, "each tool once")
         rows[number], lines[number] = _row(place, words, MM_PER_UNIT[units]), place.line
     return rows
