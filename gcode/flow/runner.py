@@ -10,7 +10,7 @@ from collections.abc import Callable, Generator, Iterator
 from dataclasses import replace
 
 from gcode.bulk.plain_runs import MAX_LINES, PlainBatch, PlainRun, PlainStart, plain_run
-from gcode.control.state import State
+from gcode.control.state import State, same_position
 from gcode.dialects import Dialect
 from gcode.errors import GcodeError, Place
 from gcode.events import ArcMotion, Event, LinearMotion, Notice
@@ -184,9 +184,9 @@ class Runner:
                 raise block.error(None, "abort", f"the program aborts: {comment.strip()[6:]}")
 
     def _step(self, block: ParsedBlock, *, first_of_program: bool) -> Generator[Event, None, bool]:
-        """Runs a block of words; True where it moved."""
+        """Runs a block of words; True where it moved, also where the motion waits for the next one."""
         session = self.session
-        moved = False
+        before, moved = session.state, False
         session.state, events = step(session.state, block, first_of_program=first_of_program)
         for event in events:
             if isinstance(event, CallRequest):
@@ -196,6 +196,8 @@ class Runner:
             else:
                 moved = moved or isinstance(event, LinearMotion | ArcMotion)
                 yield event
+        if before.waiting is not None or session.state.waiting is not None:  # others' motions were among the events
+            return not same_position(before.position_mm, session.state.position_mm)
         return moved
 
     def _plain(self) -> PlainBatch | None:

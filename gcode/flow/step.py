@@ -79,7 +79,8 @@ def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...
         _check_under_compensation(state, command)
     for phase in command.phases:
         state, more = PHASES[phase](state, command)
-        if phase == "radius" or (state.waiting is None and not _asks_corner(command)):
+        # a call is carried out at once, whatever waits: the blocks that it leads to are what the motion waits for
+        if phase in ("radius", "call", "state") or (state.waiting is None and not _asks_corner(command)):
             events.extend(more)
         else:
             state, ready = through(state, command if phase == "motion" else None, more)

@@ -121,6 +121,18 @@ def test_an_inner_corner_between_places_is_found() -> None:
     np.testing.assert_allclose(lowest, (0.03, np.sqrt(2.0) - 1.0), atol=1e-4)
 
 
+def test_a_flat_tool_on_planes_is_exact() -> None:
+    """Its rim rests on them between the slices, at the ends of the bottom."""
+    ridge = np.array([(-4.0, -4.0), (4.0, -4.0), (4.0, -2.0), (0.1, 1.9), (-3.8, -2.0), (-4.0, -2.0)])
+    roof = solids.extruded(ridge)[:, :, [1, 0, 2]][:, ::-1]
+    part = slice_part(solid(roof, "roof"), 0.5)
+    tool = StructuringElement.tool(parse_tool("flat 2"))
+    rows, places = np.array([-2.3, 2.0]), Samples.between(-1.0, 1.0, 1.0)
+    heights = cl_heights(Profiles.of(part.sections(1)), tool, rows, places)
+    wanted = exact(part.mesh, "flat 2", np.column_stack((np.zeros(2), rows)), -20.0)
+    np.testing.assert_allclose(heights, np.repeat(wanted[:, None], places.count, axis=1), atol=1e-4)
+
+
 def test_a_ridge_between_slices_is_met() -> None:
     # a roof whose ridge runs along the rows, at a place that no even slice has
     ridge = np.array([(-8.0, -8.0), (8.0, -8.0), (8.0, -4.0), (0.13, 3.87), (-7.74, -4.0), (-8.0, -4.0)])

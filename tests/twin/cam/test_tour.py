@@ -98,6 +98,17 @@ def test_a_wall_is_gone_around_or_over() -> None:
     assert tour.down.sum() == 19
 
 
+def test_a_link_stays_down_where_it_sees_its_end() -> None:
+    """Three points on a line, a wall between the last two: lifted there, although staying down were shorter."""
+    allowed = np.ones((9, 5), dtype=bool)
+    allowed[6, :] = False
+    clear = ClearGrid.of(allowed, (0.0, 0.0), 0.5)
+    speeds = LinkSpeeds(feed_mm_s=10.0, rapid_mm_s=500.0)
+    points = [[0.5, 1.0], [1.5, 1.0], [4.0, 1.0]]
+    assert order_pieces(points, (0, 0), speeds, lift_s=2.0, clear=clear).down.tolist() == [True, True, False]
+    assert order_pieces(points, (0, 0), speeds, lift_s=2.0).down.tolist() == [True, True, True]
+
+
 def test_far_links_go_over_and_near_ones_stay_down() -> None:
     speeds = LinkSpeeds(feed_mm_s=10.0, rapid_mm_s=500.0, rapid_mm_s2=5000.0)
     tour = order_pieces([[1.0, 0.0], [2.0, 0.0], [90.0, 0.0]], (0, 0), speeds, lift_s=0.5)
