@@ -1,7 +1,8 @@
 """Pytest plugin for runs under ``NUMBA_DISABLE_JIT=1``: fails when no test covers a kernel as plain Python.
 
-Plain Python is a hundred times slower. Tests marked ``compiled`` are omitted, and a test that takes longer than
-`LIMIT_S` of processor time is skipped; kernels that it called do not count.
+Plain Python is a hundred times slower. Tests marked ``compiled`` are omitted, and so are those listed in
+``slow_in_plain_python.txt``, which are known to take too long. A test that takes longer than `LIMIT_S` of processor
+time is skipped; kernels that it called do not count.
 
 NUMBA_DISABLE_JIT=1 python -m pytest -p support.plain_kernels -m "not compiled" tests/twin/tools
 """
@@ -25,6 +26,7 @@ KERNELS = sorted(p.relative_to(ROOT) for p in (ROOT / "twin").rglob("*kernels.py
 #: Processor time for one test, s.
 LIMIT_S = 3.0
 _OUTPUT = "kernels called"
+_SLOW = Path(__file__).with_name("slow_in_plain_python.txt")
 
 defined: set[str] = set()
 #: By the test at hand, and by all tests that came to their end.
@@ -54,6 +56,13 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(Workers())
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Omit the tests that are known to take too long."""
+    slow = set(_SLOW.read_text("utf-8").splitlines())
+    config.hook.pytest_deselected(items=[item for item in items if item.nodeid in slow])
+    items[:] = [item for item in items if item.nodeid not in slow]
+
+
 class Workers:
     """Collects what the workers noted."""
 
@@ -65,14 +74,14 @@ class Workers:
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_setup(item: pytest.Item) -> Generator[None, object, object]:
     """Make a test's fixtures within the limit."""
-    with limited():
+    with limited(item):
         return (yield)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
     """Carry out a test within the limit."""
-    with limited():
+    with limited(pyfuncitem):
         result = yield
     called.update(noted)
     noted.clear()
@@ -80,12 +89,12 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, o
 
 
 @contextmanager
-def limited() -> Iterator[None]:
-    """Skip the test at hand when the block takes too long."""
+def limited(item: pytest.Item) -> Iterator[None]:
+    """Skip a test when the block takes too long."""
 
     def stop(*_: object) -> None:
         noted.clear()
-        pytest.skip(f"takes more than {LIMIT_S:g} s as plain Python")
+        pytest.skip(f"more than {LIMIT_S:g} s as plain Python: {item.nodeid}")
 
     usual = signal.signal(signal.SIGPROF, stop)
     signal.setitimer(signal.ITIMER_PROF, LIMIT_S)
