@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import re
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -18,15 +16,12 @@ from twin.geometry.mesh.slicing import MeshEdges, mesh_edges, mesh_sections, wel
 from twin.geometry.polygons.region import Region
 from twin.geometry.threads import run_all
 from twin.workpiece.solid_check import check_closed, check_orientation
+from twin.workpiece.stl_file import stl_corners
 from twin.workpiece.stock import SliceSet, even_pitch, plane_counts, plane_positions
 from twin.workpiece.store import PLANE_AXES
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
-
-_BINARY_HEADER = 84
-_BINARY_TRIANGLE = 50
-_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +82,7 @@ def load_mesh(path: Path | str, *, scale: float = 1.0, offset_mm: ArrayLike = (0
         raise MeshError(f"{path}: cannot be read: {error.strerror}; expected an STL file") from error
     if not (np.isfinite(scale) and scale > 0.0):
         raise MeshError(f"{path}: scale {scale:g}; expected a number above 0")
-    corners = _stl_corners(str(path), data)
+    corners = stl_corners(str(path), data)
     return solid(corners * scale + frozen(offset_mm, "offset_mm", (3,)), str(path))
 
 
@@ -168,54 +163,3 @@ def _trimesh(vertices_mm: ArrayLike, triangles: ArrayLike) -> Trimesh:
     import trimesh  # takes as long to load as all else of a replay, which seldom needs it
 
     return trimesh.Trimesh(np.asarray(vertices_mm), np.asarray(triangles), process=False)
-
-
-def _stl_corners(name: str, data: bytes) -> FloatArray:
-    """The corners of an STL file's triangles, shape (m, 3, 3).
-
-    Raises:
-        MeshError: empty, cut off, or not an STL.
-    """
-    if not data:
-        raise MeshError(f"{name}: is empty; expected an STL file")
-    binary = data.lstrip()[:5].lower() != b"solid" or b"\0" in data
-    if binary:
-        _check_binary_length(name, data)
-        corners = np.frombuffer(data, dtype=_RECORD, offset=_BINARY_HEADER)["corners"].astype(np.float64)
-    else:
-        corners = _ascii_corners(name, data)
-    if len(corners) == 0:
-        raise MeshError(f"{name}: holds no triangles; expected binary or ASCII STL with a closed surface")
-    return corners
-
-
-def _ascii_corners(name: str, data: bytes) -> FloatArray:
-    """The same of a text file."""
-    import trimesh
-
-    try:
-        mesh = trimesh.load_mesh(io.BytesIO(data), file_type="stl", process=False)
-        corners: FloatArray = np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)]
-    except Exception as error:  # trimesh and its helpers raise many kinds
-        raise MeshError(f"{name}: cannot be read as STL; expected a complete binary or ASCII STL file") from error
-    begun = len(re.findall(rb"(?i)\bfacet\s+normal\b", data))
-    if begun != len(corners):
-        raise MeshError(f"{name}: is not a complete STL file: {begun} facets begin, {len(corners)} can be read")
-    return corners
-
-
-def _check_binary_length(name: str, data: bytes) -> None:
-    """A binary STL states the number of triangles after its header.
-
-    Raises:
-        MeshError: the file's length does not fit.
-    """
-    if len(data) < _BINARY_HEADER:
-        raise MeshError(f"{name}: is not an STL file: {len(data)} bytes; expected at least {_BINARY_HEADER}")
-    count = int.from_bytes(data[_BINARY_HEADER - 4 : _BINARY_HEADER], "little")
-    wanted = _BINARY_HEADER + _BINARY_TRIANGLE * count
-    if len(data) != wanted:
-        raise MeshError(
-            f"{name}: is not an STL file: {len(data)} bytes; "
-            f"expected {wanted} for {count} triangles, as its header states"
-        )

@@ -141,16 +141,100 @@ def test_a_binary_file_that_was_cut_off_is_refused(tmp_path: Path) -> None:
         load_mesh(path)
 
 
-@pytest.mark.parametrize("text", [b"solid \xff\xfe\xe9\n", b"solid a\nfacet but no number"])
-def test_text_that_is_no_stl_or_was_cut_off_is_refused(tmp_path: Path, text: bytes) -> None:
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (b"solid \xff\xfe\xe9\n", "holds no triangles; expected binary or ASCII STL with a closed surface"),
+        (b"solid a\nfacet but no number", 'line 2: "facet but no number"; expected a facet of three vertices: '),
+        (b"solid a\n\nkind regards\nendsolid", 'line 3: "kind regards"; expected a facet of three vertices: '),
+    ],
+)
+def test_text_that_is_no_stl_or_was_cut_off_is_refused(tmp_path: Path, text: bytes, message: str) -> None:
     path = tmp_path / "part.stl"
     path.write_bytes(text)
     with pytest.raises(MeshError) as caught:
         load_mesh(path)
-    assert str(caught.value) in {
-        f"{path}: cannot be read as STL; expected a complete binary or ASCII STL file",
-        f"{path}: holds no triangles; expected binary or ASCII STL with a closed surface",
-    }
+    assert str(caught.value).startswith(f"{path}: {message}")
+
+
+def block_text() -> str:
+    """A cube of 1000 mm3 as ASCII STL."""
+    mesh = trimesh.Trimesh(cube().reshape(-1, 3), np.arange(36).reshape(-1, 3), process=False)
+    return str(trimesh.exchange.stl.export_stl_ascii(mesh)).replace("solid", "solid plate", 1)
+
+
+VARIANTS = {
+    "end solid in two words": lambda text: text.replace("endsolid", "end solid"),
+    "all keywords in two words": lambda text: (
+        text.replace("endsolid", "end solid").replace("endloop", "end loop").replace("endfacet", "end facet")
+    ),
+    "UTF-8 mark": lambda text: b"\xef\xbb\xbf" + text.encode(),
+    "UTF-16": lambda text: text.encode("utf-16"),
+    "UTF-8 mark and upper case": lambda text: b"\xef\xbb\xbf" + text.upper().encode(),
+    "name with vertex": lambda text: text.replace("plate", "vertex_plate"),
+    "name with every keyword": lambda text: text.replace("plate", "facet normal vertex endsolid outer loop"),
+    "name in Latin-1": lambda text: text.replace("plate", "Gehäuse").encode("latin-1"),
+    "no name": lambda text: text.replace(" plate", ""),
+    "NUL padding": lambda text: text.encode() + b"\0" * 700,
+    "NUL padding of the name": lambda text: text.replace("plate", "plate" + "\0" * 69).encode(),
+    "no last line": lambda text: text[: text.index("endsolid")].rstrip(),
+    "no first line": lambda text: text[text.index("facet") :],
+    "CRLF": lambda text: text.replace("\n", "\r\n"),
+    "CR": lambda text: text.replace("\n", "\r"),
+    "tabs and empty lines": lambda text: "\n\n" + text.replace("\n", "\n\n\t\t"),
+    "one line": lambda text: " ".join(text.split()),
+    "exponents": lambda text: re.sub(r"(?<=vertex ).*", lambda m: _spelled(m[0], "{:+.7E}"), text),
+    "Fortran exponents": lambda text: re.sub(
+        r"(?<=vertex ).*", lambda m: _spelled(m[0], "{:.6e}").replace("e", "D"), text
+    ),
+    "decimal commas": lambda text: re.sub(r"(?<=vertex ).*", lambda m: m[0].replace(".", ","), text),
+    "commas between numbers": lambda text: re.sub(r"(?<=vertex ).*", lambda m: ", ".join(m[0].split()), text),
+    "normals that are no numbers": lambda text: re.sub(r"(?<=normal ).*", "-nan(ind) -1.#IND nan", text),
+    "colours": lambda text: text.replace("plate", "plate\ncolor 0.5 0.5 0.5"),
+    "DOS end of file": lambda text: text.encode() + b"\r\n\x1a",
+}
+
+
+def _spelled(numbers: str, form: str) -> str:
+    return " ".join(form.format(float(word)) for word in numbers.split())
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_every_way_to_write_an_ascii_file_is_read(tmp_path: Path, variant: str) -> None:
+    written = VARIANTS[variant](block_text())
+    path = tmp_path / "part.stl"
+    path.write_bytes(written if isinstance(written, bytes) else written.encode())
+    assert load_mesh(path).volume_mm3 == pytest.approx(1000.0)
+
+
+def test_a_binary_file_may_have_solid_in_its_header_and_padding(tmp_path: Path) -> None:
+    path = stl(tmp_path / "part.stl", cube())
+    data = path.read_bytes()
+    path.write_bytes(b"solid facet normal vertex".ljust(80) + data[80:])
+    assert load_mesh(path).volume_mm3 == pytest.approx(1000.0)
+    path.write_bytes(data + bytes(300))
+    assert load_mesh(path).volume_mm3 == pytest.approx(1000.0)
+    path.write_bytes(b"solid".ljust(80) + data[80:-7])
+    with pytest.raises(MeshError, match=r"is not an STL file: 677 bytes; expected 684 for 12 triangles"):
+        load_mesh(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("vertex 0.0", "vertex O.0", 'line {}: "O.0'),
+        ("vertex 0.0", "vertex 1.000,0", 'line {}: "1.000,0'),
+        ("endloop", "vertex 1 2 3\nendloop", 'line 2: "facet normal'),
+    ],
+)
+def test_the_line_of_a_mistake_in_a_text_file_is_named(tmp_path: Path, old: str, new: str, message: str) -> None:
+    text = block_text()
+    path = tmp_path / "part.stl"
+    path.write_text(text.replace(old, new, 1))
+    line = text.count("\n", 0, text.index(old)) + 1
+    with pytest.raises(MeshError) as caught:
+        load_mesh(path)
+    assert str(caught.value).startswith(f"{path}: {message.format(line)}")
 
 
 def test_an_ascii_file_that_was_cut_off_is_refused_with_what_can_be_read(tmp_path: Path) -> None:
@@ -158,7 +242,8 @@ def test_an_ascii_file_that_was_cut_off_is_refused_with_what_can_be_read(tmp_pat
     path = stl(tmp_path / "part.stl", cube(), ascii_text=True)
     whole = path.read_bytes()
     path.write_bytes(whole + b"\n" + whole[: len(whole) // 2])
-    with pytest.raises(MeshError, match=r"part\.stl: is not a complete STL file: \d+ facets begin, \d+ can be read$"):
+    message = r"is not a complete STL file: 18 facets can be read, the one in line 132 is cut off$"
+    with pytest.raises(MeshError, match=message):
         load_mesh(path)
     path.write_bytes(whole + b"\n" + whole.replace(b"vertex", b"vertex  "))
     assert len(load_mesh(path).triangles) == 24
