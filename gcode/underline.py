@@ -7,17 +7,25 @@ import unicodedata
 _INDENT = "    "
 #: Characters of longer blocks that are shown before the word, and from its beginning on.
 _BEFORE, _AFTER = 60, 60
+#: Marks that reverse the direction of writing or end a line unseen, and halves of characters.
+_UNSEEN = (0x061C, 0x200E, 0x200F, *range(0x2028, 0x202F), *range(0x2066, 0x206A), *range(0xD800, 0xE000))
 #: Characters that would act on a terminal, and what is shown for them, one for one so that columns stay.
 _HARMLESS = {
     **{code: chr(0x2400 + code) for code in range(0x20) if chr(code) not in "\t\n"},
     0x7F: "\u2421",
-    **dict.fromkeys((*range(0x80, 0xA0), *range(0x202A, 0x202F), *range(0x2066, 0x206A)), "\ufffd"),
+    **dict.fromkeys((*range(0x80, 0xA0), *_UNSEEN), "\ufffd"),
 }
+_ESCAPED = {code: f"\\u{code:04x}" for code in _HARMLESS}
 
 
 def harmless(text: str) -> str:
-    """A text without characters that control a terminal: a program may hold any byte."""
-    return text.translate(_HARMLESS)
+    """A text without characters that control a terminal: names, cells and programs may hold any byte."""
+    return text if text.isprintable() else text.translate(_HARMLESS)
+
+
+def harmless_json(text: str) -> str:
+    """JSON with these characters as escapes: it reads the same."""
+    return text if text.isprintable() else text.translate(_ESCAPED)
 
 
 def underlined(message: str, text: str, column: int) -> str:

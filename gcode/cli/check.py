@@ -46,21 +46,23 @@ def check(
 
 
 def _print_text(found: Findings, notices: bool) -> None:
+    from gcode.cli.console import say
     from gcode.cli.number_format import plural
-    from gcode.underline import harmless
 
     for error in found.errors:
-        typer.echo(f"{error.underlined()}\n")
+        say(f"{error.underlined()}\n")
     if notices:
         for group in found.grouped():
-            typer.echo(harmless(group))
+            say(group)
     count = plural(len(found.errors), "error")
     more = f", {plural(len(found.notices), 'notice')}" if found.notices else ""
-    typer.secho(f"{found.file}: {count}{more}", fg=typer.colors.RED if found.errors else typer.colors.GREEN)
+    say(f"{found.file}: {count}{more}", colour=typer.colors.RED if found.errors else typer.colors.GREEN)
 
 
 def _print_json(found: Findings, notices: bool) -> None:
     import json
 
+    from gcode.cli.console import say_json
+
     for made in found.objects(notices=notices):
-        typer.echo(json.dumps(made))
+        say_json(json.dumps(made))

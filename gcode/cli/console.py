@@ -1,4 +1,8 @@
-"""Standard output for results; standard error for messages and, on a terminal, progress."""
+"""Standard output for results; standard error for messages and, on a terminal, progress.
+
+All text of a command passes here, or through `gcode.cli.clean_console`: no character of a file, of its name or of its
+values reaches the terminal as a control character.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from gcode.cli import exit_codes
-from gcode.underline import harmless
+from gcode.underline import harmless, harmless_json
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -33,19 +37,30 @@ class UnusableFileError(Exception):
 
 def results() -> Console:
     """Standard output for tables."""
-    from rich.console import Console
+    from gcode.cli.clean_console import CleanConsole
 
-    class Results(Console):
-        def on_broken_pipe(self) -> None:
-            raise BrokenPipeError  # without this, rich ends the program with code 1
+    return CleanConsole(width=None if sys.stdout.isatty() else WIDTH)
 
-    return Results(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
+
+def say(text: str, *, colour: str | None = None, error: bool = False) -> None:
+    """Prints a text.
+
+    Args:
+        colour: name of a colour, for terminals.
+        error: on standard error.
+    """
+    typer.secho(harmless(text), fg=colour, err=error)
+
+
+def say_json(text: str) -> None:
+    """Prints JSON."""
+    typer.echo(harmless_json(text))
 
 
 def fail(message: str) -> None:
     """Prints an error."""
     typer.secho("error:", fg=typer.colors.RED, bold=True, err=True, nl=False)
-    typer.echo(f" {harmless(message)}", err=True)
+    say(f" {message}", error=True)
 
 
 def closed_pipe() -> int:
@@ -68,13 +83,14 @@ def with_progress(events: Iterable[Event], name: str) -> Iterator[Event]:
     if not sys.stderr.isatty():
         yield from events
         return
-    from rich.console import Console
+    from rich.text import Text
 
-    console = Console(stderr=True, highlight=False)
-    with console.status(f"{name}: reading") as status:
+    from gcode.cli.clean_console import CleanConsole
+
+    with CleanConsole(stderr=True).status(Text(f"{name}: reading")) as status:
         drawn = time.monotonic()
         for number, event in enumerate(events, start=1):
             yield event
             if number % _EVERY_EVENTS == 0 and time.monotonic() - drawn >= _EVERY_S:
                 drawn = time.monotonic()
-                status.update(f"{name}: line {event.place.line}")
+                status.update(Text(f"{name}: line {event.place.line}"))

@@ -17,8 +17,9 @@ def motions(file: ProgramFile, *, setup: Setup) -> None:
 
     from gcode.flow.interpreter import interpret_file
     from gcode.report.motion_json import motion_objects
+    from gcode.underline import harmless_json
 
     encode = json.JSONEncoder(allow_nan=False).encode
     events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
     for made in motion_objects(events, setup.settings.start_mm):
-        sys.stdout.write(f"{encode(made)}\n")
+        sys.stdout.write(f"{harmless_json(encode(made))}\n")

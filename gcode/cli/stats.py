@@ -30,7 +30,7 @@ def stats(
 
     Times include feed motions, dwells, and rapids at the given rate; acceleration and tool changes are ignored.
     """
-    from gcode.cli.console import results, with_progress
+    from gcode.cli.console import results, say_json, with_progress
     from gcode.flow.interpreter import interpret_file
     from gcode.report.stats import program_stats
 
@@ -41,7 +41,7 @@ def stats(
 
         from gcode.report.stats_json import stats_object
 
-        typer.echo(json.dumps({"file": str(file), **stats_object(found)}, indent=2))
+        say_json(json.dumps({"file": str(file), **stats_object(found)}, indent=2))
     else:
         from gcode.cli.stats_tables import print_stats
 

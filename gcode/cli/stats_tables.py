@@ -24,7 +24,7 @@ def print_stats(console: Console, name: str, stats: ProgramStats) -> None:
     console.print(_totals(stats))
     for title, body in (("Tools", _tools(stats)), ("Motions", _motions(stats)), ("Travel range, mm", _space(stats))):
         if body.row_count:
-            console.print(f"\n[bold]{title}[/]")
+            console.print(f"\n{title}", style="bold")
             console.print(body)
     if stats.untimed:
         console.print(f"\n{plural(stats.untimed, 'motion')} at a feed of 0: not in the times", style="yellow")

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from rich.console import Console
+import json
+from typing import Any
+
 from rich.text import Text
 
-from gcode.cli.console import results
+from gcode.cli.clean_console import CleanConsole
+from gcode.cli.console import results, say, say_json
 
-__all__ = ["errors", "fail", "results", "warn"]
+__all__ = ["errors", "fail", "print_json", "results", "say", "say_json", "warn"]
 
 
-def errors() -> Console:
+def errors() -> CleanConsole:
     """Standard error; messages are never wrapped, so that they can be searched and copied."""
-    return Console(stderr=True, highlight=False, soft_wrap=True)
+    return CleanConsole(stderr=True, soft_wrap=True)
 
 
 def warn(message: str) -> None:
@@ -23,3 +26,8 @@ def warn(message: str) -> None:
 def fail(message: str) -> None:
     """Print the error that ended the program."""
     errors().print(Text.assemble(("error:", "bold red"), " ", message))
+
+
+def print_json(value: Any) -> None:
+    """Print one JSON object."""
+    say_json(json.dumps(value, indent=2, ensure_ascii=False))

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from gcode.underline import harmless
 from twin.comparison.comparison import Comparison, compare_files
 from twin.errors import SettingsError, TwinError
 from twin.measured.settings import CompareSettings
@@ -94,7 +95,7 @@ def batch_csv(rows: list[Row]) -> str:
                 times = {"begin_s": window.span_s[0], "end_s": window.span_s[1], "lag_s": row.found.lag_s}
                 message = "; ".join(row.found.warnings)
                 writer.writerow({**head, "status": "ok", **times, **values, "message": message})
-    return out.getvalue()
+    return harmless(out.getvalue())
 
 
 def _compared(path: Path, cells: Mapping[str, Any], base: Callable[[Path], Mapping[str, Any]]) -> Comparison:

@@ -11,6 +11,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup, escape
 
+from gcode.underline import harmless, harmless_json
 from twin.archive.container.partial import PartialFile
 from twin.comparison import plots
 from twin.comparison.as_json import comparison_object
@@ -27,7 +28,7 @@ def write_report(found: Comparison, folder: Path) -> Path:
     """
     pictures = _pictures(found)
     files = {f"{name}.png": data for name, data in pictures.items()}
-    files["comparison.json"] = json.dumps(comparison_object(found), ensure_ascii=False, indent=1).encode()
+    files["comparison.json"] = _json(found).encode()
     files[REPORT] = html(found, pictures).encode()
     for name, data in files.items():
         partial = PartialFile(folder / name, force=True)
@@ -42,7 +43,7 @@ def html(found: Comparison, pictures: dict[str, bytes]) -> str:
     Args:
         pictures: PNG data by name, as `_pictures` makes them.
     """
-    environment = Environment(loader=PackageLoader("twin.comparison", ""), autoescape=True, trim_blocks=False)
+    environment = Environment(loader=PackageLoader("twin.comparison", ""), autoescape=True, finalize=_clean)
     environment.filters.update(newtons=_newtons, percent=_percent, ratio=_ratio, degrees=_degrees)
 
     def figure(name: str, caption: str) -> Markup:
@@ -61,6 +62,15 @@ def html(found: Comparison, pictures: dict[str, bytes]) -> str:
         figure=figure,
         done=[*(("read", note) for note in log.notes), *((c.kind, c.text) for c in found.corrections)],
     )
+
+
+def _json(found: Comparison) -> str:
+    return harmless_json(json.dumps(comparison_object(found), ensure_ascii=False, indent=1))
+
+
+def _clean(value: object) -> object:
+    """A value of the template; names and notes may hold any character."""
+    return harmless(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
 def _subtitle(found: Comparison) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from gcode.underline import harmless
 from twin.errors import IdentifyError
 from twin.identification.fit.least_squares import CONFIDENCE
 from twin.identification.models.straight import NAMES
@@ -50,7 +51,7 @@ def coefficients_toml(result: Identified) -> str:
         cutting["standard_errors"] = [_rounded(e) for e in estimate.errors.tolist()]
         if not estimate.fixed.any():
             cutting["correlation"] = [[round(c, 4) for c in row] for row in estimate.correlation.tolist()]
-    comment = "".join(f"# {line}\n" for line in _comment(result))
+    comment = "".join(f"# {harmless(' '.join(line.splitlines()))}\n" for line in _comment(result))
     return comment + "\n" + toml_text({"cutting": cutting})
 
 

@@ -43,7 +43,7 @@ def _figure(result: Identified) -> Figure:
         _means(figure.add_subplot(grid[0, axis]), result, axis)
     for i, cut in enumerate(waves):
         _waveform(figure.add_subplot(grid[1 + i // _ACROSS, i % _ACROSS]), cut, first=i == 0)
-    figure.suptitle(_title(result), fontsize=10)
+    figure.suptitle(_title(result), fontsize=10, parse_math=False)
     return figure
 
 
@@ -90,7 +90,9 @@ def _means(axes: Axes, result: Identified, axis: int) -> None:
 
 def _cut_names(axes: Axes, at: Any, names: list[str]) -> None:
     turned = sum(map(len, names)) > 30
-    axes.set_xticks(at, names, fontsize=7, rotation=60 if turned else 0, ha="right" if turned else "center")
+    axes.set_xticks(
+        at, names, fontsize=7, rotation=60 if turned else 0, ha="right" if turned else "center", parse_math=False
+    )
     axes.tick_params(axis="y", labelsize=7)
     axes.spines[["top", "right"]].set_visible(False)
 
@@ -106,7 +108,7 @@ def _waveform(axes: Axes, cut: CutResult, *, first: bool) -> None:
         axes.plot(degrees, both[1][:, axis], lw=1.0, color=_COLOURS[axis], label=f"F{_AXES[axis]}")
     error = cut.waveform_error_n()
     held = ", held out" if cut.held_out else ""
-    axes.set_title(f"{cut.name}{held}: dots measured, lines fitted, RMS {error:.2f} N", fontsize=8)
+    axes.set_title(f"{cut.name}{held}: dots measured, lines fitted, RMS {error:.2f} N", fontsize=8, parse_math=False)
     axes.set_xticks(range(0, 361, 90))
     axes.tick_params(labelsize=7)
     axes.set_xlabel("spindle angle, deg", fontsize=7)

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any
 
+from gcode.underline import harmless_json
+
 
 def toml_text(data: Mapping[str, Any]) -> str:
     """Tables and lists of tables on top, everything below them inline; reading it gives the same data.
@@ -46,7 +48,7 @@ def _key(name: str) -> str:
 
 
 def _text(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return harmless_json(json.dumps(text, ensure_ascii=False))
 
 
 def toml_value(value: object) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,7 +38,7 @@ def run_one(run: Path, measured: Path | None, options: Mapping[str, Any], output
     Raises:
         TwinError: a mistake that the user can correct.
     """
-    from twin.cli.console import results, warn
+    from twin.cli.console import print_json, results, warn
 
     table, job_log = job_measured(run)
     settings = settings_from(CompareSettings, options, table, f"{run}, [measured] of its job", "twin compare")
@@ -52,7 +51,7 @@ def run_one(run: Path, measured: Path | None, options: Mapping[str, Any], output
     if outputs.as_json:
         from twin.comparison.as_json import comparison_object
 
-        typer.echo(json.dumps(comparison_object(found), indent=2, ensure_ascii=False))
+        print_json(comparison_object(found))
     else:
         from twin.cli.show.compare_tables import print_comparison
 
@@ -63,7 +62,7 @@ def run_one(run: Path, measured: Path | None, options: Mapping[str, Any], output
 def run_batch(table: Path, options: Mapping[str, Any], outputs: Outputs) -> None:
     """Compare the rows of a table; exit code 1 when one of them failed."""
     from twin.archive.container.partial import PartialFile
-    from twin.cli.console import fail, results, warn
+    from twin.cli.console import fail, print_json, results, warn
     from twin.comparison.batch import batch_csv, compare_batch
 
     rows = []
@@ -87,7 +86,7 @@ def run_batch(table: Path, options: Mapping[str, Any], outputs: Outputs) -> None
             | {"comparison": comparison_object(r.found) if r.found is not None else None}
             for r in rows
         ]
-        typer.echo(json.dumps(objects, indent=2, ensure_ascii=False))
+        print_json(objects)
     else:
         from twin.cli.show.compare_tables import print_batch
 

@@ -107,12 +107,11 @@ def _write(result: Identified, out: Path | None, plot: Path | None, *, force: bo
 
 
 def _print_json(result: Identified, out: Path | None, plot: Path | None) -> None:
-    import json
-
+    from twin.cli.console import print_json
     from twin.identification.as_json import identified_object
 
     files = {"coefficients_file": out and str(out), "plot_file": plot and str(plot)}
-    typer.echo(json.dumps(identified_object(result) | files, indent=2, ensure_ascii=False))
+    print_json(identified_object(result) | files)
 
 
 def _print(cuts: Cuts, result: Identified, files: dict[str, Path | None], *, verbose: bool) -> None:

@@ -26,11 +26,10 @@ def info(
     found = run_info(run)
     force_on = found.header.parameters.get("output.force_on", "tool")
     if as_json:
-        import json
-
+        from twin.cli.console import print_json
         from twin.cli.show.as_json import info_object
 
-        typer.echo(json.dumps(info_object(found, force_on), indent=2, ensure_ascii=False))
+        print_json(info_object(found, force_on))
         return
     from twin.cli.console import results
     from twin.cli.show.summary import print_summary
@@ -38,7 +37,7 @@ def info(
     console = results()
     if found.summary is not None:
         print_summary(console, found.summary, found.header, (), force_on=force_on)
-    console.print("[bold]The file[/]")
+    console.print("The file", style="bold")
     console.print(_file_table(found))
 
 

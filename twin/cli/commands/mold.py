@@ -38,7 +38,7 @@ def mold(
     All parameters are keys of the mold job file (docs/mold.md); options cannot set them, since stages and
     tools are tables.
     """
-    from twin.cli.console import warn
+    from twin.cli.console import say_json, warn
     from twin.cli.show.mold_tables import mold_json, print_mold
     from twin.cli.show.progress import working
     from twin.moldmaking import STAGES, load_mold
@@ -54,7 +54,7 @@ def mold(
         found = planned(job, stage=stage, progress=progress)
     files = found.write(force=force) | _drawn(found, plot, rrd, force=force)
     if as_json:
-        typer.echo(mold_json(found, files))
+        say_json(mold_json(found, files))
     elif not quiet:
         print_mold(found, files)
     for warning in found.warnings:

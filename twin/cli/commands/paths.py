@@ -43,7 +43,7 @@ def paths(
     All parameters of the tool path except the tool have defaults. They can also be given in a TOML file, by their key
     names (docs/paths.md); options override the file. Nothing is written if the tool cannot cut anything.
     """
-    from twin.cli.console import warn
+    from twin.cli.console import say_json, warn
     from twin.cli.show.path_summary import path_json, print_path
     from twin.cli.show.progress import working
     from twin.planning.output_files import check_outputs
@@ -60,7 +60,7 @@ def paths(
     lines = made.write(out, job, force=force)
     _draw(made, plot, rrd, force=force)
     if as_json:
-        typer.echo(path_json(made, lines, files))
+        say_json(path_json(made, lines, files))
     elif not quiet:
         print_path(made, lines, files)
 

@@ -33,7 +33,7 @@ def reach(
     threads: Annotated[int | None, typer.Option(min=1, help="Number of threads.", show_default="all cores")] = None,
 ) -> None:
     """Find the material that tools cannot reach on a part: position, volume, thickness."""
-    from twin.cli.console import warn
+    from twin.cli.console import say_json, warn
     from twin.cli.show.progress import working
     from twin.cli.show.reach_report import print_reach, reach_json
     from twin.planning.output_files import check_outputs
@@ -52,7 +52,7 @@ def reach(
         found.write_meshes(out, force=force)
     _draw(found, plot, rrd, force=force)
     if as_json:
-        typer.echo(reach_json(part, found))
+        say_json(reach_json(part, found))
     elif not quiet:
         print_reach(part, found)
 

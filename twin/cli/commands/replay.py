@@ -78,12 +78,11 @@ def replay(
 
 
 def _print_json(outcome: Outcome, files: dict[str, Path | None], force_on: str) -> None:
-    import json
-
+    from twin.cli.console import print_json
     from twin.cli.show.as_json import replay_object
 
     names = {key: None if path is None else str(path) for key, path in files.items()}
-    typer.echo(json.dumps(replay_object(outcome, force_on) | names, indent=2, ensure_ascii=False))
+    print_json(replay_object(outcome, force_on) | names)
 
 
 def _print_summary(outcome: Outcome, files: dict[str, Path | None], force_on: str) -> None:

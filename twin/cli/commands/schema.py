@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Annotated, Any, Literal, TypeAlias
 
 import typer
@@ -17,7 +16,9 @@ def schema(
     ] = "job",
 ) -> None:
     """Print the JSON Schema of a job file or settings file, for editors that complete and check TOML."""
-    typer.echo(json.dumps(_schema(file), indent=2, ensure_ascii=False))
+    from twin.cli.console import print_json
+
+    print_json(_schema(file))
 
 
 def _schema(file: File) -> dict[str, Any]:

@@ -36,6 +36,7 @@ def verify(
 
     Ends with exit code 4 if a gouge is deeper than the tolerance or the excess is more than permitted.
     """
+    from twin.cli.console import say_json
     from twin.cli.show.progress import progress
     from twin.cli.show.verify_tables import deviation_json, print_deviation
     from twin.planning.output_files import check_outputs
@@ -48,7 +49,7 @@ def verify(
         found = verified(job_file, part, tolerances, begin=line.start, at=line.at)
     _draw(found, plot, rrd, f"{job_file.name} compared with {part.name}", force=force)
     if as_json:
-        typer.echo(deviation_json(found, {"job": job_file, "part": part, **files}))
+        say_json(deviation_json(found, {"job": job_file, "part": part, **files}))
     elif not quiet:
         print_deviation(found)
     raise typer.Exit(exit_codes.OK if found.within_tolerance else exit_codes.OUT_OF_TOLERANCE)

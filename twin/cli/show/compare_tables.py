@@ -57,7 +57,7 @@ def print_batch(console: Console, rows: Sequence[Row]) -> None:
 
 
 def _section(console: Console, title: str, body: Table) -> None:
-    console.print(f"\n[bold]{title}[/]")
+    console.print(f"\n{title}", style="bold")
     console.print(body)
 
 

@@ -72,7 +72,7 @@ class LineProgress:
         from rich import progress as rich
 
         self._bar = rich.Progress(
-            rich.TextColumn("{task.description}", style="bold"),
+            rich.TextColumn("{task.description}", style="bold", markup=False),
             rich.BarColumn(bar_width=28),
             rich.TaskProgressColumn(),
             rich.TextColumn("{task.fields[state]}"),
@@ -122,7 +122,7 @@ def working(*, quiet: bool, even: bool = False) -> Iterator[Callable[[str, float
     from rich import progress as rich
 
     bar = rich.Progress(
-        rich.TextColumn("{task.description}", style="bold"),
+        rich.TextColumn("{task.description}", style="bold", markup=False),
         rich.BarColumn(bar_width=28),
         rich.TaskProgressColumn(),
         *((rich.TimeRemainingColumn(compact=True), rich.TextColumn("left")) if even else (rich.TimeElapsedColumn(),)),

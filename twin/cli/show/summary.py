@@ -88,7 +88,7 @@ def table(*heads: str, numbers: str = "") -> Table:
 
 
 def _section(console: Console, title: str, body: Table, style: str = "bold") -> None:
-    console.print(f"\n[{style}]{title}[/]")
+    console.print(f"\n{title}", style=style)
     console.print(body)
 
 
