@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
-from collections.abc import Iterator, Mapping
+from array import array
+from collections.abc import Iterable, Iterator, Mapping
+from math import nan
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mcap.reader import make_reader
 from mcap.records import Channel, Schema
 
 from twin.archive import schemas
-from twin.archive.container.partial import reason
-from twin.archive.frames import RunFile
+from twin.archive.foreign_log import ForeignLog, LogMessage
+from twin.archive.frames import McapFile, RunFile
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 
@@ -43,31 +45,51 @@ def read_numbers(path: str | PathLike[str], topic: str | None = None) -> tuple[s
     Raises:
         ArchiveError: not an MCAP file; a topic that is unknown, cannot be read, or must be chosen.
     """
-    path = Path(path)
     try:
-        with path.open("rb") as file:
-            reader = make_reader(file)
-            found = _choose(path, reader.get_summary(), topic)
-            rows = list(_rows(reader, found))
-    except OSError as error:
-        raise ArchiveError(f"{path}: cannot be read: {reason(error)}") from error
+        with McapFile(path) as file:
+            log = ForeignLog(file)
+            found = _choose(file.path, log.channels, topic)
+            rows = _Rows()
+            for time_ns, row in _numbers(log.messages(found)):
+                rows.add(time_ns, row)
     except ArchiveError:
         raise
     except Exception as error:  # the libraries raise many kinds on damaged files
         raise ArchiveError(f"{path}: not a readable MCAP file: {error}") from error
-    if len(rows) < 2:
-        raise ArchiveError(f"{path}: {len(rows)} messages on {found}, expected at least 2")
-    names = dict.fromkeys(name for _, row in rows for name in row)
-    columns = {name: np.array([row.get(name, np.nan) for _, row in rows]) for name in names}
-    if not any(name.split(".")[-1] in ("t_s", "time", "t", "time_s") for name in names):
-        times = np.array([ns for ns, _ in rows], np.int64)
-        columns = {"t_s": (times - times[0]) * 1e-9, **columns}
-    return found, columns
+    if len(rows.times_ns) < 2:
+        raise ArchiveError(f"{path}: {len(rows.times_ns)} messages on {found}, expected at least 2")
+    return found, rows.columns()
 
 
-def _choose(path: Path, summary: Any, topic: str | None) -> str:
+@dataclasses.dataclass(slots=True)
+class _Rows:
+    """Numbers by name, with 8 bytes a number."""
+
+    times_ns: array[int] = dataclasses.field(default_factory=lambda: array("q"))
+    values: dict[str, array[float]] = dataclasses.field(default_factory=dict)
+
+    def add(self, time_ns: int, row: Mapping[str, float]) -> None:
+        for name, value in row.items():
+            column = self.values.setdefault(name, array("d"))
+            column.extend([nan] * (len(self.times_ns) - len(column)))
+            column.append(value)
+        self.times_ns.append(time_ns)
+
+    def columns(self) -> dict[str, FloatArray]:
+        """The columns in the order of log time; a number that a message does not have is NaN."""
+        times = np.array(self.times_ns)
+        order = np.argsort(times, kind="stable")
+        columns: dict[str, FloatArray] = {}
+        if not any(name.split(".")[-1] in ("t_s", "time", "t", "time_s") for name in self.values):
+            columns["t_s"] = (times[order] - times[order[0]]) * 1e-9
+        for name, column in self.values.items():
+            column.extend([nan] * (len(times) - len(column)))
+            columns[name] = np.array(column)[order]
+        return columns
+
+
+def _choose(path: Path, channels: list[Channel], topic: str | None) -> str:
     """The topic to read."""
-    channels: list[Channel] = list(summary.channels.values()) if summary is not None else []
     known = [c.topic for c in channels if c.message_encoding in _ENCODINGS]
     if topic is not None:
         if topic not in known:
@@ -80,19 +102,22 @@ def _choose(path: Path, summary: Any, topic: str | None) -> str:
     return likely[0]
 
 
-def _rows(reader: Any, topic: str) -> Iterator[tuple[int, dict[str, float]]]:
+def _numbers(messages: Iterable[LogMessage]) -> Iterator[tuple[int, dict[str, float]]]:
     """Log time in ns and numbers of each message."""
     classes: dict[int, Any] = {}
-    for schema, channel, message in reader.iter_messages(topics=[topic]):
+    for message in messages:
+        channel = message.channel
         if channel.message_encoding == "json":
-            yield message.log_time, dict(_json_numbers(json.loads(message.data), ""))
+            yield message.time_ns, dict(_json_numbers(json.loads(message.data), ""))
         else:
-            made = classes.get(channel.id) or _class(schema)
+            made = classes.get(channel.id) or _class(message.schema)
             classes[channel.id] = made
-            yield message.log_time, dict(_fields(made.FromString(message.data), ""))
+            yield message.time_ns, dict(_fields(made.FromString(message.data), ""))
 
 
-def _class(schema: Schema) -> Any:
+def _class(schema: Schema | None) -> Any:
+    if schema is None:
+        raise ValueError("a protobuf topic without a schema")
     return schemas.embedded_class(schema.data, schema.name)
 
 

@@ -12,17 +12,18 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Self
 
-import zstandard
 from google.protobuf.message import DecodeError
 from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
+from mcap.exceptions import EndOfFile, McapError
 from mcap.opcode import Opcode
 from mcap.records import Attachment as AttachmentRecord
-from mcap.records import Chunk, Footer, Header
+from mcap.records import Footer, Header
+from mcap.records import Metadata as MetadataRecord
 
-from twin.archive import schemas
+from twin.archive import run_metadata, schemas
 from twin.archive.container.container import MAGIC
 from twin.archive.container.partial import partial_path, reason
+from twin.archive.container.unpack import HEAD_BYTES, SHORT_HEAD_BYTES, ChunkError, ChunkHead
 from twin.errors import ArchiveError
 from twin.record import Attachment
 
@@ -32,11 +33,32 @@ HEAD = struct.Struct("<BQ")
 DAMAGE = (ValueError, KeyError, TypeError, struct.error, McapError, DecodeError)
 #: Footer record and closing magic: the last bytes of a complete file.
 FOOTER_BYTES = HEAD.size + 20 + len(MAGIC)
+_FIXED_LENGTHS: dict[int, int] = {Opcode.FOOTER: 20, Opcode.DATA_END: 4}
+_PIECE = 1 << 20
 
 
 def stream(body: bytes) -> ReadDataStream:
     """Input of the ``read`` functions of `mcap.records`."""
-    return ReadDataStream(io.BytesIO(body))
+    return _Content(io.BytesIO(body))
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """Opcode and length of one record of the file.
+
+    Attributes:
+        offset: position of its first byte.
+        length: of its content.
+    """
+
+    offset: int
+    opcode: int
+    length: int
+
+    @property
+    def end(self) -> int:
+        """Position of the next record."""
+        return self.offset + HEAD.size + self.length
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +75,27 @@ class Frame:
     body: bytes
 
 
-class RunFile:
-    """A run's file, open for reading; a context manager.
+class _Content(ReadDataStream):
+    """The content of a record; bytes beyond its end are an error, where the library gives those that are there."""
+
+    def read(self, length: int) -> bytes:
+        data = super().read(length)
+        if len(data) < length:
+            raise EndOfFile
+        return data
+
+
+class McapFile:
+    """An MCAP file, open for reading; a context manager.
+
+    Attributes:
+        kind: the file that is expected, for messages.
 
     Raises:
-        ArchiveError: no such file, not an MCAP file, or one of another program.
+        ArchiveError: no such file, or not an MCAP file.
     """
+
+    kind = "an MCAP file"
 
     def __init__(self, path: str | PathLike[str]) -> None:
         self.path = Path(path)
@@ -74,92 +111,123 @@ class RunFile:
             raise
 
     def frames(self, start: int = len(MAGIC)) -> Iterator[Frame]:
-        """Records from a position on, up to the footer or to the last complete one."""
+        """Records from a position on, up to the footer or to the last complete one.
+
+        Raises:
+            ArchiveError: damaged.
+        """
+        for head in self.heads(start):
+            yield self.frame(head)
+
+    def heads(self, start: int = len(MAGIC)) -> Iterator[Head]:
+        """As `frames`, without reading the records' content.
+
+        Raises:
+            ArchiveError: damaged.
+        """
         offset = start
-        while (frame := self._frame(offset)) is not None:
-            yield frame
-            offset += HEAD.size + len(frame.body)
-            if frame.opcode == Opcode.FOOTER:
+        while (head := self._head(offset)) is not None:
+            yield head
+            offset = head.end
+            if head.opcode == Opcode.FOOTER:
                 return
+
+    def frame(self, head: Head) -> Frame:
+        """A record with its content."""
+        return Frame(head.offset, head.opcode, self.read(head.offset + HEAD.size, head.length))
 
     def footer(self) -> Footer | None:
         """The footer, or None for an incomplete file."""
         start = self.size - FOOTER_BYTES
-        if start < len(MAGIC) or self._read(self.size - len(MAGIC), len(MAGIC)) != MAGIC:
+        if start < len(MAGIC) or self.read(self.size - len(MAGIC), len(MAGIC)) != MAGIC:
             return None
-        frame = self._frame(start)
-        return Footer.read(stream(frame.body)) if frame is not None and frame.opcode == Opcode.FOOTER else None
+        head = HEAD.unpack(self.read(start, HEAD.size))
+        return Footer.read(stream(self.read(start + HEAD.size, 20))) if head == (Opcode.FOOTER, 20) else None
+
+    def chunk_head(self, head: Head) -> ChunkHead:
+        """The fields of a chunk.
+
+        Raises:
+            ArchiveError: damaged.
+        """
+        try:
+            return ChunkHead.read(self.read(head.offset + HEAD.size, min(head.length, HEAD_BYTES)), head.length)
+        except ChunkError as error:
+            raise self.damaged(head.offset, str(error)) from error
 
     def unpack(self, frame: Frame) -> bytes:
         """The records inside a chunk.
 
         Raises:
-            ArchiveError: damaged, or compressed by an unknown method.
+            ArchiveError: damaged, too large, or compressed by an unknown method.
         """
-        chunk = Chunk.read(stream(frame.body))
-        data = self._decompress(chunk, frame.offset)
-        if chunk.uncompressed_crc not in (0, zlib.crc32(data)):
-            raise self.damaged(frame.offset)
-        return data
+        try:
+            return ChunkHead.read(frame.body, len(frame.body)).unpack(frame.body)
+        except ChunkError as error:
+            raise self.damaged(frame.offset, str(error)) from error
 
-    def attachment(self, frame: Frame) -> Attachment:
-        """An attached file.
+    def read(self, offset: int, length: int) -> bytes:
+        """Bytes of the file, fewer at its end.
 
         Raises:
-            ArchiveError: damaged.
+            ArchiveError: the file cannot be read.
         """
-        if zlib.crc32(frame.body[:-4]) != int.from_bytes(frame.body[-4:], "little"):
-            raise self.damaged(frame.offset)
-        found = AttachmentRecord.read(stream(frame.body))
-        return Attachment(name=found.name, media_type=found.media_type, data=found.data)
-
-    def damaged(self, offset: int) -> ArchiveError:
-        """The error for an inconsistent record."""
-        return ArchiveError(f"{self.path}: damaged at byte {offset}")
-
-    def _check_kind(self) -> None:
-        if not self.size:
-            raise ArchiveError(f"{self.path}: is empty, expected a run's MCAP file")
-        if (begin := self._read(0, len(MAGIC))) != MAGIC:
-            what = "ends within its first bytes" if MAGIC.startswith(begin) else "is not an MCAP file"
-            raise ArchiveError(f"{self.path}: {what}, expected a run's MCAP file")
-        first = self._frame(len(MAGIC))
-        if first is None or first.opcode != Opcode.HEADER:
-            raise ArchiveError(f"{self.path}: ends within its first bytes, expected a run's MCAP file")
-        try:
-            profile = Header.read(stream(first.body)).profile
-        except DAMAGE:
-            raise self.damaged(first.offset) from None
-        if profile != schemas.PROFILE:
-            raise ArchiveError(f"{self.path}: an MCAP file of profile {profile!r}, expected {schemas.PROFILE!r}")
-
-    def _frame(self, offset: int) -> Frame | None:
-        head = self._read(offset, HEAD.size)
-        if len(head) < HEAD.size:
-            return None
-        opcode, length = HEAD.unpack(head)
-        if not opcode or offset + HEAD.size + length > self.size:
-            return None
-        return Frame(offset, opcode, self._read(offset + HEAD.size, length))
-
-    def _read(self, offset: int, length: int) -> bytes:
         try:
             self._file.seek(offset)
             return self._file.read(length)
         except OSError as error:
             raise ArchiveError(f"{self.path}: cannot be read: {reason(error)}") from error
 
-    def _decompress(self, chunk: Chunk, offset: int) -> bytes:
-        if chunk.compression == "":
-            return chunk.data
-        if chunk.compression != "zstd":
-            raise ArchiveError(f"{self.path}: compressed by {chunk.compression!r}, expected 'zstd' or nothing")
+    def damaged(self, offset: int, problem: str = "") -> ArchiveError:
+        """The error for an inconsistent record."""
+        return ArchiveError(f"{self.path}: damaged at byte {offset}{problem and f': {problem}'}")
+
+    def _check_kind(self) -> None:
+        if not self.size:
+            raise ArchiveError(f"{self.path}: is empty, expected {self.kind}")
+        if (begin := self.read(0, len(MAGIC))) != MAGIC:
+            what = "ends within its first bytes" if MAGIC.startswith(begin) else "is not an MCAP file"
+            raise ArchiveError(f"{self.path}: {what}, expected {self.kind}")
+
+    def _head(self, offset: int) -> Head | None:
+        """Opcode and length of the record at a position; None where the file ends within it."""
+        raw = self.read(offset, HEAD.size)
+        if len(raw) < HEAD.size:
+            return None
+        opcode, length = HEAD.unpack(raw)
+        if not opcode:
+            if not self._zeros_from(offset):
+                raise self.damaged(offset, "zeros in place of a record")
+            return None
+        head = Head(offset, opcode, length)
         try:
-            if zstandard.frame_content_size(chunk.data) not in (-1, chunk.uncompressed_size):
-                raise self.damaged(offset)
-            return zstandard.ZstdDecompressor().decompress(chunk.data, max_output_size=chunk.uncompressed_size)
-        except zstandard.ZstdError:
-            raise self.damaged(offset) from None
+            self._check_frame(head)
+        except ArchiveError:
+            if self._zeros_from(offset + HEAD.size + HEAD_BYTES):
+                return None
+            raise
+        return head if head.end <= self.size else None
+
+    def _zeros_from(self, offset: int) -> bool:
+        """Whether the rest of the file is zeros, as a crash of the system may leave it: an early end, not damage."""
+        at = offset
+        while piece := self.read(at, _PIECE):
+            if piece.strip(b"\0"):
+                return False
+            at += len(piece)
+        return True
+
+    def _check_frame(self, head: Head) -> None:
+        """Lengths that can be derived from what is in the record must agree with its frame."""
+        fixed = _FIXED_LENGTHS.get(head.opcode, head.length)
+        if head.length != fixed:
+            raise self.damaged(head.offset, f"a record of {head.length} bytes, expected {fixed}")
+        if head.opcode == Opcode.CHUNK and self.size - head.offset - HEAD.size >= min(head.length, SHORT_HEAD_BYTES):
+            self.chunk_head(head)
+        elif head.opcode == Opcode.MESSAGE_INDEX and len(raw := self.read(head.offset + HEAD.size, 6)) == 6:
+            length = 6 + int.from_bytes(raw[2:], "little")
+            if head.length != length:
+                raise self.damaged(head.offset, f"a message index of {head.length} bytes, expected {length}")
 
     def _hint(self) -> str:
         partial = partial_path(self.path)
@@ -172,3 +240,57 @@ class RunFile:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._file.close()
+
+
+class RunFile(McapFile):
+    """A run's file.
+
+    Raises:
+        ArchiveError: no such file, not an MCAP file, or one of another program.
+    """
+
+    kind = "a run's MCAP file"
+    #: Name and version of the program that wrote the file.
+    library = ""
+
+    def attachment(self, frame: Frame) -> Attachment:
+        """An attached file.
+
+        Raises:
+            ArchiveError: damaged.
+        """
+        if zlib.crc32(frame.body[:-4]) != int.from_bytes(frame.body[-4:], "little"):
+            raise self.damaged(frame.offset)
+        found = AttachmentRecord.read(stream(frame.body))
+        return Attachment(name=found.name, media_type=found.media_type, data=found.data)
+
+    def values(self, frame: Frame) -> tuple[str, dict[str, str]]:
+        """Name and values of a metadata record.
+
+        Raises:
+            ChunkError: their checksum is wrong.
+        """
+        content = stream(frame.body)
+        found = MetadataRecord.read(content)
+        if content.count != len(frame.body):
+            raise ChunkError("metadata that are shorter than their record")
+        required = self.library.endswith(schemas.WITH_CHECKSUMS)
+        return found.name, run_metadata.unsealed(found.metadata, required=required)
+
+    def _check_kind(self) -> None:
+        super()._check_kind()
+        first = self._head(len(MAGIC))
+        if first is None or first.opcode != Opcode.HEADER:
+            raise ArchiveError(f"{self.path}: ends within its first bytes, expected {self.kind}")
+        try:
+            header = Header.read(stream(self.frame(first).body))
+        except DAMAGE:
+            raise self.damaged(first.offset) from None
+        if header.profile != schemas.PROFILE:
+            raise ArchiveError(f"{self.path}: an MCAP file of profile {header.profile!r}, expected {schemas.PROFILE!r}")
+        self.library = header.library
+
+    def _check_frame(self, head: Head) -> None:
+        if head.opcode > Opcode.DATA_END:
+            raise self.damaged(head.offset, f"a record of the unknown kind 0x{head.opcode:02X}")
+        super()._check_frame(head)

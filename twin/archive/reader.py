@@ -10,13 +10,15 @@ from typing import Any
 
 import numpy as np
 from mcap.opcode import Opcode
-from mcap.records import Channel, Metadata, Schema
+from mcap.records import Channel, Schema
 from numpy.typing import NDArray
 
 from twin.archive import forces, messages, schemas
 from twin.archive import run_metadata as meta
 from twin.archive.container.chunk import MESSAGE_FIXED, MESSAGE_HEAD
+from twin.archive.container.unpack import ChunkError
 from twin.archive.frames import DAMAGE, HEAD, Frame, RunFile, stream
+from twin.archive.integrity import checked_index, compare_counts
 from twin.errors import ArchiveError
 from twin.record import Attachment, Record, RunHeader, RunSummary, Step
 
@@ -31,7 +33,8 @@ def read_run(path: str | PathLike[str]) -> Iterator[Record]:
     """The records of a run in the order in which they were written; arrays are read-only.
 
     A file that ends early (a killed run, an incomplete copy) gives the records that are complete in it: no step without
-    all of its samples, and no `RunSummary` if it ends before that.
+    all of its samples, and no `RunSummary` if it ends before that. The frames, the checksum of every chunk, the
+    messages' sequence numbers and the counts of the file's statistics are checked.
 
     Raises:
         ArchiveError: not the file of a run, damaged, or shorter than its header.
@@ -74,38 +77,73 @@ class Decoder:
     _classes: dict[int, Any] = field(default_factory=dict)
     _layouts: dict[int, forces.ForceLayout] = field(default_factory=dict)
     _files: list[Attachment] = field(default_factory=list)
-    _parameters: dict[str, str] = field(default_factory=dict)
+    _metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     _header: RunHeader | None = None
     _summary: RunSummary | None = None
     _pending: _PendingStep | None = None
+    _sequence: dict[int, int] = field(default_factory=dict)
 
     def records(self) -> Iterator[Record]:
-        """All records of the file, the summary last wherever it is in the file."""
-        self._files.clear()
-        self._header = self._summary = None
+        """All records of the file, the summary last wherever it is in the file.
+
+        Raises:
+            ArchiveError: damaged, or without a whole header.
+        """
+        index = checked_index(self.file)
+        yield from self._body()
+        if index is not None:
+            compare_counts(self.file, index, self.counts)
+            for name in index.metadata.keys() - self._metadata.keys():
+                raise self.file.damaged(index.metadata[name], f"no metadata {name!r}")
+            if self._pending is not None:
+                raise self.file.damaged(index.start, f"step {self._pending.message.step} without all of its samples")
+        if self._summary is not None:
+            yield self._summary
+
+    def readable(self) -> Iterator[Record]:
+        """As `records`, not compared with the file's index: up to the first damaged record.
+
+        Raises:
+            ArchiveError: as `records`, after the records that can be read.
+        """
+        yield from self._body()
+        if self._summary is not None:
+            yield self._summary
+
+    def header(self) -> RunHeader:
+        """The run's header alone; nothing after it is read or checked.
+
+        Raises:
+            ArchiveError: damaged, or without a whole header.
+        """
+        return next(record for record in self.readable() if isinstance(record, RunHeader))
+
+    def _body(self) -> Iterator[Record]:
+        """All records but the summary, which is kept.
+
+        Raises:
+            ArchiveError: damaged, or without a whole header.
+        """
+        self._begin()
         for frame in self.file.frames():
             if self._header is None and frame.opcode in (Opcode.CHUNK, Opcode.MESSAGE):
                 raise self.file.damaged(frame.offset)
             try:
                 yield from self._frame(frame)
             except DAMAGE as error:
-                raise self.file.damaged(frame.offset) from error
+                problem = str(error) if isinstance(error, ChunkError) else ""
+                raise self.file.damaged(frame.offset, problem) from error
             if frame.opcode == Opcode.DATA_END:
                 break
         if self._header is None:
-            raise self._no_header()
-        if self._summary is not None:
-            yield self._summary
+            raise ArchiveError(f"{self.file.path}: ends before the run's header is whole (byte {self.file.size})")
 
-    def header(self) -> RunHeader:
-        """The run's header alone."""
-        for record in self.records():
-            if isinstance(record, RunHeader):
-                return record
-        raise self._no_header()
-
-    def _no_header(self) -> ArchiveError:
-        return ArchiveError(f"{self.file.path}: ends before the run's header is whole (byte {self.file.size})")
+    def _begin(self) -> None:
+        self.counts.clear()
+        self._files.clear()
+        self._metadata.clear()
+        self._sequence.clear()
+        self._header = self._summary = self._pending = None
 
     def _frame(self, frame: Frame) -> Iterator[Record]:
         if frame.opcode == Opcode.CHUNK:
@@ -115,18 +153,19 @@ class Decoder:
         elif frame.opcode == Opcode.ATTACHMENT:
             self._files.append(self.file.attachment(frame))
         elif frame.opcode == Opcode.METADATA:
-            yield from self._metadata(Metadata.read(stream(frame.body)))
+            yield from self._values(frame)
         elif frame.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
             self._register(frame.opcode, frame.body)
 
-    def _metadata(self, entry: Metadata) -> Iterator[Record]:
-        if entry.name == meta.PARAMETERS:
-            self._parameters = entry.metadata
-        elif entry.name == meta.HEADER:
-            self._header = meta.to_header(entry.metadata, self._parameters, self._files)
+    def _values(self, frame: Frame) -> Iterator[Record]:
+        """Take named values; those of the header give the header."""
+        name, values = self.file.values(frame)
+        self._metadata[name] = values
+        if name == meta.HEADER:
+            self._header = meta.to_header(values, self._metadata[meta.PARAMETERS], self._files)
             yield self._header
-        elif entry.name == meta.SUMMARY:
-            self._summary = meta.to_summary(entry.metadata)
+        elif name == meta.SUMMARY:
+            self._summary = meta.to_summary(values)
 
     def _register(self, opcode: int, body: bytes) -> None:
         """Keep a schema or a channel; messages of another program's schema are decoded by that schema."""
@@ -153,22 +192,31 @@ class Decoder:
         at = 0
         while at < len(data):
             opcode, length = data[at], int.from_bytes(data[at + 1 : at + 9], "little")
+            if at + 9 + length > len(data):
+                raise ChunkError("a record that is longer than its chunk")
             if opcode == Opcode.MESSAGE:
-                _, _, channel, _, time_ns, _ = MESSAGE_HEAD.unpack_from(data, at)
+                _, _, channel, sequence, time_ns, _ = MESSAGE_HEAD.unpack_from(data, at)
                 block = self._force_block(channel, data, at)
                 if len(block):
-                    self._count(channel, len(block), int(block["log_time"][-1]))
+                    self._count(channel, len(block), sequence, int(block["log_time"][-1]))
                     yield from self._take(block)
                     at += block.nbytes
                     continue
-                self._count(channel, 1, time_ns)
+                self._count(channel, 1, sequence, time_ns)
                 yield from self._message(channel, data[at + 9 + MESSAGE_FIXED : at + 9 + length])
             elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
                 self._register(opcode, data[at + 9 : at + 9 + length])
+            else:
+                raise ChunkError(f"a chunk with a record of kind 0x{opcode:02X}")
             at += 9 + length
 
-    def _count(self, channel: int, n: int, time_ns: int) -> None:
-        self.counts[self._topics[channel]] += n
+    def _count(self, channel: int, n: int, sequence: int, time_ns: int) -> None:
+        """Count messages; this program numbers those of a channel without a gap, so that a lost chunk is noticed."""
+        topic, expected = self._topics[channel], self._sequence.get(channel, 0)
+        if sequence != expected and self.file.library.startswith(schemas.LIBRARY):
+            raise ChunkError(f"message {sequence} on {topic} after message {expected - 1}")
+        self._sequence[channel] = sequence + n & 0xFFFFFFFF
+        self.counts[topic] += n
         self.end_ns = max(self.end_ns, time_ns)
 
     def _force_block(self, channel: int, data: bytes, at: int) -> NDArray[np.void]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import zlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from twin.archive.container.unpack import ChunkError
 from twin.arrays import frozen
 from twin.record import Attachment, RunHeader, RunSummary, ToolRecord, ToolSummary
 
@@ -17,6 +19,7 @@ PARAMETERS = "twin.parameters"
 #: Last entry of the head of a file; everything else of the `RunHeader` is written before it.
 HEADER = "twin.run"
 SUMMARY = "twin.summary"
+_CHECKSUM = "crc32"
 
 _HEADER_TEXT = ("twin_version", "program", "force_on")
 _HEADER_JSON = ("slice_pitch_mm", "planned_time_s")
@@ -28,6 +31,31 @@ _TOOL_SUMMARY = (
     *("number", "description", "cutting_time_s", "air_time_s", "rapid_time_s", "removed_volume_mm3", "peak_force_n"),
     *("mean_force_n", "peak_torque_nm", "mean_torque_nm", "peak_power_w", "peak_line"),
 )
+
+
+def sealed(data: Mapping[str, str]) -> dict[str, str]:
+    """Values with a checksum of them: the format itself has none for metadata."""
+    return {**data, _CHECKSUM: _checksum(data)}
+
+
+def unsealed(data: Mapping[str, str], *, required: bool) -> dict[str, str]:
+    """Values without their checksum.
+
+    Args:
+        required: whether there must be one; files of version 0.1.0 have none.
+
+    Raises:
+        ChunkError: the checksum is wrong or missing.
+    """
+    values = {key: value for key, value in data.items() if key != _CHECKSUM}
+    right = _checksum(values)
+    if data.get(_CHECKSUM, "" if required else right) != right:
+        raise ChunkError("metadata whose checksum is wrong")
+    return values
+
+
+def _checksum(data: Mapping[str, str]) -> str:
+    return f"{zlib.crc32(json.dumps(data, sort_keys=True).encode()):08x}"
 
 
 def tool_table(tools: Sequence[ToolRecord]) -> bytes:

@@ -72,13 +72,13 @@ class RunWriter:
         names = [meta.TOOL_TABLE, *(a.name for a in header.attachments)]
         if double := next((n for n in names if names.count(n) > 1), None):
             raise ArchiveError(f"attachment {double!r} is there twice; names of attachments must differ")
-        self._file = file = Container(self._put, f"machining-twin {header.twin_version}")
+        self._file = file = Container(self._put, f"{schemas.LIBRARY} {header.twin_version}{schemas.WITH_CHECKSUMS}")
         file.start()
         for attachment in header.attachments:
             file.add_attachment(attachment.name, attachment.media_type, attachment.data)
         file.add_attachment(meta.TOOL_TABLE, meta.JSON_TYPE, meta.tool_table(header.tools))
-        file.add_metadata(meta.PARAMETERS, header.parameters)
-        file.add_metadata(meta.HEADER, meta.header_metadata(header))
+        file.add_metadata(meta.PARAMETERS, meta.sealed(header.parameters))
+        file.add_metadata(meta.HEADER, meta.sealed(meta.header_metadata(header)))
         self._program = header.program
         self._tools = {tool.number: tool for tool in header.tools}
 
@@ -96,7 +96,7 @@ class RunWriter:
             case RunSummary():
                 self._end_pose(file)
                 file.flush()
-                file.add_metadata(meta.SUMMARY, meta.summary_metadata(record))
+                file.add_metadata(meta.SUMMARY, meta.sealed(meta.summary_metadata(record)))
 
     def _step(self, file: Container, step: Step) -> None:
         """A step: tool shape and pose for viewers, engagement, force samples."""

@@ -16,6 +16,10 @@ from google.protobuf.message import Message
 PROFILE = "twin"
 #: A comparison of a run with a measured log.
 COMPARISON_PROFILE = "twin-comparison"
+#: Name of the writer in the header of a file, before the version.
+LIBRARY = "machining-twin"
+#: Its end, after the version, for files whose metadata have checksums.
+WITH_CHECKSUMS = ", archive 2"
 ENCODING = "protobuf"
 
 FORCE_TOPIC = "/force"

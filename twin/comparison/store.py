@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from twin.archive.comparison_file import ComparedForces, write_comparison
+from twin.archive.schemas import LIBRARY
 from twin.comparison.as_json import comparison_object
 from twin.comparison.comparison import Comparison
 
@@ -39,6 +40,6 @@ def archive(found: Comparison, path: Path | None = None) -> Path:
         "correlation": f"{found.score:.6f}",
         "corrections": "\n".join(c.text for c in found.corrections),
     }
-    library = f"machining-twin {found.run.header.twin_version}"
+    library = f"{LIBRARY} {found.run.header.twin_version}"
     write_comparison(target, compared_forces(found), comparison_object(found), heads, library, force=True)
     return target

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from twin.archive import RunInfo, read_forces, read_run, run_info
 from twin.archive.container.partial import copy_file
 from twin.archive.force_table import array_batches, joined_arrays
+from twin.errors import ArchiveError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, WorkpiecePatch
 from twin.run.interrupted import summary_of
 from twin.run.patches import joined
@@ -72,6 +73,8 @@ class Run:
         self._archive = archive
         self.path = archive.path if isinstance(archive, TemporaryArchive) else Path(archive)
         self._info: RunInfo = run_info(self.path)
+        if self._info.damage is not None:
+            raise ArchiveError(self._info.damage)
         self.header: RunHeader = self._info.header
         self.complete: bool = self._info.complete
         self.intact: bool = self._info.intact

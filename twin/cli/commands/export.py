@@ -33,12 +33,15 @@ def export(
     """
     from twin.archive import export_forces, write_csv
     from twin.cli.console import results
+    from twin.cli.early_end import warn_of_early_end
 
     body = on or _force_on(run)
     if out == _STANDARD_OUTPUT:
         write_csv(run, sys.stdout.buffer, body)
+        warn_of_early_end(run)
         return
     rows = export_forces(run, out, on=body, force=force)
+    warn_of_early_end(run)
     results().print(f"{rows} samples written to {out}", markup=False, soft_wrap=True)
 
 

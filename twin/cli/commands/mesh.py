@@ -36,8 +36,10 @@ def mesh(
 
 
 def _from_run(run: Path) -> SurfaceMesh:
+    from twin.cli.early_end import warn_of_early_end
     from twin.run.run import Run
 
+    warn_of_early_end(run)
     return Run(run).mesh()
 
 

@@ -26,6 +26,7 @@ def view(
         return
     from twin.archive import read_run
     from twin.cli.console import results
+    from twin.cli.early_end import warn_of_early_end
     from twin.cli.show.progress import progress
     from twin.record import RunHeader, Step
     from twin.sinks.outputs import opened
@@ -33,6 +34,7 @@ def view(
     records = read_run(run)
     header = next(records)
     assert isinstance(header, RunHeader)
+    warn_of_early_end(run)
     with opened(None, rrd, view=rrd is None, force=force) as write, progress(quiet=False) as line:
         write(header)
         line.start(header.planned_time_s)

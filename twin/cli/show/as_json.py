@@ -37,6 +37,7 @@ def info_object(info: RunInfo, force_on: str) -> dict[str, Any]:
         "size_bytes": info.path.stat().st_size,
         "complete": info.complete,
         "intact": info.intact,
+        "damage": info.damage,
         "program": header.program,
         "twin_version": header.twin_version,
         "planned_time_s": header.planned_time_s,
