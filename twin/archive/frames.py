@@ -203,7 +203,8 @@ class McapFile:
         try:
             self._check_frame(head)
         except ArchiveError:
-            if self._zeros_from(offset + HEAD.size + HEAD_BYTES):
+            tail = offset + HEAD.size + HEAD_BYTES
+            if tail < self.size and self._zeros_from(tail):
                 return None
             raise
         return head if head.end <= self.size else None

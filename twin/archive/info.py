@@ -56,7 +56,7 @@ def run_info(path: str | PathLike[str], *, verify: bool = False) -> RunInfo:
     with RunFile(path) as file:
         decoder = Decoder(file)
         header = decoder.header()
-        found = _Found()
+        found = _Contents()
         try:
             found.read(file, verify=verify)
         except ArchiveError as error:
@@ -79,8 +79,8 @@ def run_info(path: str | PathLike[str], *, verify: bool = False) -> RunInfo:
 
 
 @dataclass(slots=True)
-class _Found:
-    """What a file's index and records have."""
+class _Contents:
+    """Summary and counts, from the index of a file or from its records."""
 
     index: FileIndex | None = None
     summary: RunSummary | None = None

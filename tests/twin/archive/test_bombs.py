@@ -56,7 +56,7 @@ BOMBS: dict[str, Callable[[], bytes]] = {
     "record of 2^40 bytes": lambda: struct.pack("<BQ", Opcode.CHUNK, 1 << 40) + bytes(100),
     "record in a chunk of 2^40 bytes": lambda: chunk("", struct.pack("<BQ", 5, 1 << 40) + bytes(40), 49),
     "zeros": lambda: chunk("zstd", zstd_of(1 << 20), 1 << 20),
-    "data longer than the record": lambda: struct.pack("<BQQQQIIQ", 6, 40, 0, 0, 0, 0, 0, 1 << 40) + bytes(100),
+    "data longer than the record": lambda: struct.pack("<BQQQQIIQ", 6, 240, 0, 0, 0, 0, 0, 1 << 40) + b"x" * 200,
 }
 
 

@@ -11,8 +11,8 @@ import zstandard
 
 #: Largest chunk, in bytes, unpacked. One step of a run, or one message of a log, never needs as much.
 MOST_BYTES = 1 << 30
-#: A chunk above this size, unpacked, must not be more than so many times as large as it is in the file. Measured logs
-#: and runs of this program have ratios below 50: at least the time of every message differs from the one before.
+#: A chunk above this size, unpacked, must not have more than `MOST_RATIO` times the bytes that it has in the file.
+#: Measured logs and runs of this program stay below 50: at least the time of every message differs from the last one.
 FREE_BYTES = 1 << 25
 MOST_RATIO = 200
 
