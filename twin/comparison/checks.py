@@ -13,8 +13,12 @@ from twin.measured.log import AXES, ForceLog, Gap
 from twin.measured.settings import CompareSettings
 from twin.measured.spindle import SpindleSpeed
 
-#: Forces that differ by this factor or its inverse are in another unit.
-_UNIT_FACTORS = (150.0, 7000.0)
+#: Forces that differ by this factor are of another scale: no cut is modelled that badly.
+_UNIT_FACTOR = 150.0
+#: Up to this factor a prefix is wrong; beyond it the numbers may be no forces at all.
+_THOUSANDS = 7000.0
+#: From this factor on it is worth a warning.
+_DOUBTFUL_FACTOR = 7.0
 #: For each unit the one a thousand times larger, and the one a thousand times smaller.
 _OTHER_UNITS = {"N": ("kN", "mN"), "kN": ("MN", "N"), "mN": ("N", "uN")}
 _LEVEL_SAMPLES = 50_000
@@ -24,25 +28,43 @@ _FAR_BETTER = 0.15
 
 
 def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Iterator[str]:
-    """Forces a thousand times too large or too small.
+    """Forces of another scale than the run's: in another unit, or counts or volts instead of forces.
 
     Raises:
-        CompareError: they are, and the unit was not given.
+        CompareError: they are far from the run's, and the unit was not given.
     """
     even = run.at(np.linspace(*run.span_s, _LEVEL_SAMPLES))
     measured, simulated = _level(log.force_n), _level(even)
     if not measured > 0.0:
         raise CompareError(f"{log.source}: all forces are equal: nothing was measured")
-    larger, smaller = _OTHER_UNITS.get(log.unit, ("kN", "mN"))
-    for ratio, how, unit in ((simulated / measured, "smaller", larger), (measured / simulated, "larger", smaller)):
-        if _UNIT_FACTORS[0] < ratio < _UNIT_FACTORS[1]:
-            text = (
-                f"{log.source}: forces are about {ratio:.0f} times {how} than the run's (level {measured:.4g} N, "
-                f"expected about {simulated:.4g} N): in {unit}? Give the unit by --unit {unit}; any makes it a warning"
-            )
-            if settings.unit is None:
-                raise CompareError(text)
-            yield text
+    if not simulated > 0.0:
+        return
+    smaller = simulated > measured
+    ratio = simulated / measured if smaller else measured / simulated
+    if ratio < _DOUBTFUL_FACTOR:
+        return
+    levels = f"level {measured:.4g} N, expected about {simulated:.4g} N"
+    text = f"{log.source}: forces are about {_round(ratio)} times {'smaller' if smaller else 'larger'} than the run's"
+    if ratio < _UNIT_FACTOR:
+        yield f"{text} ({levels}): is the unit or the sensitivity right, and is it the same cut?"
+        return
+    larger_unit, smaller_unit = _OTHER_UNITS.get(log.unit, ("kN", "mN"))
+    unit = larger_unit if smaller else smaller_unit
+    if ratio < _THOUSANDS:
+        text += f" ({levels}): in {unit}? Give the unit by --unit {unit}; any makes it a warning"
+    else:
+        text += (
+            f" ({levels}): counts, volts or another unit? Give the unit by --unit, or a factor for each column, "
+            "e.g. --map x=0.001*Fx; any unit makes it a warning"
+        )
+    if settings.unit is None:
+        raise CompareError(text)
+    yield text
+
+
+def _round(ratio: float) -> str:
+    """A ratio in words that need no counting of zeros."""
+    return f"{ratio:.0f}" if ratio < 1e5 else f"{ratio:.1e}".replace("e+0", "e").replace("e+", "e")
 
 
 def _level(force_n: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> float:

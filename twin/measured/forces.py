@@ -95,7 +95,12 @@ def _map_for(raw: RawLog, axis_map: AxisMap | None) -> tuple[AxisMap, list[str]]
     guessed = guess_map(candidates)
     if guessed is not None:
         return guessed, [f"axes {guessed}, by the columns' names"]
+    by_name = guess_map(raw.columns)
+    if by_name is not None:
+        return by_name, []
     offer = (candidates or list(raw.columns))[:3]
+    if not offer:
+        raise MeasuredError(f"{raw.source}: no columns of numbers besides the time; columns are {raw.listing()}")
     example = ",".join(f"{axis}={name}" for axis, name in zip(AXES, offer, strict=False))
     raise MeasuredError(
         f"{raw.source}: the names do not show which columns are Fx, Fy and Fz; columns are {raw.listing()}; "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
@@ -65,6 +66,7 @@ class RawLog:
         rate_hz: sampling rate.
         columns: by name as in the file, in the file's order, without the time column.
         notes: how it was read, one line each.
+        not_read: columns that are in the file and not here, each with the reason.
     """
 
     source: Path
@@ -73,10 +75,12 @@ class RawLog:
     rate_hz: float
     columns: dict[str, Channel] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    not_read: tuple[str, ...] = ()
 
     def listing(self) -> str:
         """The columns for a message: ``Time, Fx [N], Fy [N]``."""
-        return ", ".join(f"{c.name} [{c.unit}]" if c.unit and c.unit not in c.name else c.name for c in self._all())
+        names = [f"{c.name} [{c.unit}]" if c.unit and c.unit not in c.name else c.name for c in self._all()]
+        return listed(names, self.not_read)
 
     def _all(self) -> list[Channel]:
         return list(self.columns.values())
@@ -124,6 +128,11 @@ class ForceLog:
     def span_s(self) -> tuple[float, float]:
         """Times of the first and the last sample."""
         return float(self.t_s[0]), float(self.t_s[-1])
+
+
+def listed(names: Sequence[str], not_read: Sequence[str]) -> str:
+    """Columns for a message, also those that were not read."""
+    return (", ".join(names) or "none") + (f"; not read: {', '.join(not_read)}" if not_read else "")
 
 
 def gaps_of(t_s: FloatArray, rate_hz: float) -> tuple[Gap, ...]:

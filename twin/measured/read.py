@@ -8,9 +8,9 @@ from os import PathLike
 from pathlib import Path
 
 from twin.errors import MeasuredError
-from twin.measured.formats.table import Table
 from twin.measured.log import RawLog
 from twin.measured.settings import AS_IN_FILE, LogReading
+from twin.measured.table import Table
 from twin.measured.time_column import raw_log
 
 _MCAP_MAGIC = b"\x89MCAP"
@@ -46,12 +46,12 @@ def _read(path: Path, reading: LogReading) -> Table:
     binary = _binary(path, reading.group)
     if binary is not None:
         return binary if columns is None else _renamed(path, binary, columns)
-    from twin.measured.formats import dynoware, lvm, text
+    from twin.measured.text import dynoware, lvm, reader
 
     if lvm.is_lvm(path):
         read = lvm.read_lvm(path)
         return read if columns is None else _renamed(path, read, columns)
-    read_text = dynoware.read_dynoware if dynoware.is_dynoware(path) else text.read_text
+    read_text = dynoware.read_dynoware if dynoware.is_dynoware(path) else reader.read_text
     return read_text(path, columns=columns, delimiter=reading.delimiter, decimal=reading.decimal)
 
 

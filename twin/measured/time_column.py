@@ -10,13 +10,20 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.errors import MeasuredError
 from twin.measured.axes import aliases
-from twin.measured.formats.table import Table
-from twin.measured.log import GAP_INTERVALS, UNEVEN, UNEVEN_GAP, Channel, RawLog, gaps_of, vector
+from twin.measured.log import GAP_INTERVALS, UNEVEN, UNEVEN_GAP, Channel, RawLog, gaps_of, listed, vector
 from twin.measured.settings import AS_IN_FILE, LogReading
+from twin.measured.table import Table
 from twin.measured.units import ANGLE_NAME, TIME_NAME, find_unit, split_unit
 
 #: A given rate and the one of the time column may differ by this much before it is worth a note.
 _SAME_RATE = 0.01
+_DAY_S = 86400.0
+#: Moments since 1970 of a log, s.
+_EPOCH_S = (6e8, 4e9)
+#: Days since 1900 and since the year 0, as tables and MATLAB count them, of logs.
+_DAY_NUMBERS = ((30_000.0, 60_000.0), (720_000.0, 760_000.0))
+#: Over midnight a step may differ from the usual one by this many of it, or by this much.
+_DAY_JUMP, _DAY_JUMP_S = 3.0, 1e-3
 #: Rates outside are a sign of a wrong unit of time.
 _PLAUSIBLE_HZ = (20.0, 1e7)
 
@@ -49,6 +56,7 @@ def raw_log(path: Path, table: Table, reading: LogReading = AS_IN_FILE) -> RawLo
         rate_hz=rate,
         columns={c.name: c for c in channels},
         notes=(*table.notes, *notes, *more),
+        not_read=table.not_read,
     )
     return replace(log, notes=(*log.notes, *_gap_notes(log)))
 
@@ -65,6 +73,8 @@ def _time_column(table: Table) -> tuple[int | None, list[str]]:
     marked = [i for i, name in enumerate(table.names) if _is_time(table, i)]
     if marked:
         return marked[0], []
+    if table.clock is not None:
+        return table.clock, []
     if len(table.names) < 2 or table.rate_hz is not None:
         return None, []
     first = table.values[:, 0]
@@ -128,8 +138,8 @@ def _counted(
         )
     if rate is None:
         raise MeasuredError(
-            f"{path}: no column of time among {', '.join(table.names)}; give the sampling rate by --rate HZ, "
-            f"or names for the columns by --columns, e.g. {_example(table)}"
+            f"{path}: no column of time among {listed(table.names, table.not_read)}; give the sampling rate by "
+            f"--rate HZ, or names for the columns by --columns, e.g. {_example(table)}"
         )
     origin = "as given" if rate_hz else "as in the file"
     if rate_hz and table.rate_hz and abs(rate_hz / table.rate_hz - 1.0) > _SAME_RATE:
@@ -158,6 +168,9 @@ def _from_column(
     t_s = t_s[rows]
     if len(t_s) < 2:
         raise MeasuredError(f"{path}: {len(t_s)} samples, expected at least 2")
+    if not unit:
+        t_s, more = _guessed_unit(t_s, table.names[at])
+        notes += more
     if t_s[0] > 1e8:
         notes.append(f"time counted from the first sample, which is at {t_s[0]:.3f} s")
         t_s = t_s - t_s[0]
@@ -168,10 +181,46 @@ def _from_column(
     return t_s, rate, rows, notes
 
 
+def _guessed_unit(t_s: FloatArray, name: str) -> tuple[FloatArray, list[str]]:
+    """Times in s where the numbers are moments since 1970 in a smaller unit, or days of a calendar."""
+    for size, unit in ((1e-3, "ms"), (1e-6, "us"), (1e-9, "ns")):
+        if _EPOCH_S[0] < t_s[0] * size < _EPOCH_S[1]:
+            return (t_s - t_s[0]) * size, [f"column {name!r} taken as {unit} since 1970, counted from the first one"]
+    span = float(t_s[-1] - t_s[0])
+    day = any(low < t_s[0] < high for low, high in _DAY_NUMBERS)
+    if day and span > 0.0 and (len(t_s) - 1) / span > _PLAUSIBLE_HZ[1]:
+        return (t_s - t_s[0]) * _DAY_S, [f"column {name!r} taken as days of a calendar, counted from the first one"]
+    return t_s, []
+
+
 def _steady(
     path: Path, table: Table, t_s: FloatArray, rows: np.ndarray[tuple[int], np.dtype[np.int64]], rate_hz: float | None
 ) -> tuple[FloatArray, float, list[str]]:
     """Strictly increasing times and their rate."""
+    t_s, notes = _over_midnight(t_s, table, rows)
+    t_s, rate, more = _increasing(path, table, t_s, rows, rate_hz)
+    return t_s, rate, [*notes, *more]
+
+
+def _over_midnight(
+    t_s: FloatArray, table: Table, rows: np.ndarray[tuple[int], np.dtype[np.int64]]
+) -> tuple[FloatArray, list[str]]:
+    """Seconds of the day counted on where they begin again at the end of a day."""
+    steps = np.diff(t_s)
+    over = np.flatnonzero(steps < 0.0)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    near = max(_DAY_JUMP * usual, _DAY_JUMP_S)
+    if not len(over) or not usual > 0.0 or not np.all(np.abs(steps[over] + _DAY_S - usual) < near):
+        return t_s, []
+    t_s = t_s.copy()
+    t_s[1:] += _DAY_S * np.cumsum(steps < 0.0)
+    return t_s, [f"time passes midnight at {table.row_word} {rows[over[0] + 1]}: counted on"]
+
+
+def _increasing(
+    path: Path, table: Table, t_s: FloatArray, rows: np.ndarray[tuple[int], np.dtype[np.int64]], rate_hz: float | None
+) -> tuple[FloatArray, float, list[str]]:
+    """`_steady` for times that do not begin again."""
     steps = np.diff(t_s)
     back = np.flatnonzero(steps < 0.0)
     if len(back):

@@ -136,6 +136,25 @@ def test_two_axes_are_compared_alone() -> None:
     assert found.windows[0].of("resultant").max_n < 1e-9
 
 
+@pytest.mark.parametrize("power", [-9, -6, -5, -4, 4, 5, 6, 9])
+def test_a_scale_wrong_by_a_power_of_ten_is_refused_with_both_levels(power: int) -> None:
+    log = log_of(RUN, lag_s=0.0)
+    log = replace(log, force_n=frozen(log.force_n * 10.0**power, "force_n", (None, 3)))
+    how = "smaller" if power < 0 else "larger"
+    with pytest.raises(CompareError, match=rf"times {how} than the run's \(level .* N, expected about .* N\): counts"):
+        compare(RUN, log, CompareSettings())
+    found = compare(RUN, log, CompareSettings(unit="N"))
+    assert any(f"times {how} than the run's" in w for w in found.warnings)
+
+
+@pytest.mark.parametrize("factor", [0.01, 0.1, 10.0, 100.0])
+def test_a_scale_wrong_by_ten_or_a_hundred_is_a_warning(factor: float) -> None:
+    log = log_of(RUN, lag_s=0.0)
+    log = replace(log, force_n=frozen(log.force_n * factor, "force_n", (None, 3)))
+    found = compare(RUN, log, CompareSettings())
+    assert any("is the unit or the sensitivity right" in w for w in found.warnings)
+
+
 @pytest.mark.parametrize(("factor", "how", "unit"), [(1e-3, "smaller", "kN"), (1e3, "larger", "mN")])
 def test_a_unit_wrong_by_a_thousand_is_refused(factor: float, how: str, unit: str) -> None:
     log = mapped(log_of(RUN), factor * np.eye(3))

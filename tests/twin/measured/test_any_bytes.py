@@ -14,10 +14,10 @@ from support.measured_files import FORMATS
 
 from twin.errors import MeasuredError
 from twin.measured.forces import force_log
-from twin.measured.formats.text import parse_text
 from twin.measured.log import RawLog
 from twin.measured.read import read_log
 from twin.measured.settings import LogReading
+from twin.measured.text.reader import parse_text
 from twin.measured.time_column import raw_log
 
 CHARACTERS = st.sampled_from(list("0123456789.,;:\t -+eE#%\"'[]()/abcFxyztNs\n\n\n"))

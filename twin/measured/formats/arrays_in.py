@@ -14,7 +14,7 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.errors import MeasuredError
 from twin.measured.axes import guess_map
-from twin.measured.formats.table import Table, table
+from twin.measured.table import Table, table
 from twin.measured.units import find_unit, split_unit
 
 #: A matrix with more columns than this is not a log.

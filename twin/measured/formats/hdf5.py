@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.errors import MeasuredError
 from twin.measured.formats.arrays_in import Named, columns_table
-from twin.measured.formats.table import Table
+from twin.measured.table import Table
 
 _UNIT_KEYS = ("unit", "units", "unit_string", "engineeringunit", "si_unit", "y_unit")
 _MATLAB_OWN = "#"

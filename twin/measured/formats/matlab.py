@@ -7,7 +7,7 @@ from pathlib import Path
 from twin.errors import MeasuredError
 from twin.measured.formats.arrays_in import Named, columns_table, flatten
 from twin.measured.formats.hdf5 import read_hdf5
-from twin.measured.formats.table import Table
+from twin.measured.table import Table
 
 _HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
 

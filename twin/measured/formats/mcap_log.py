@@ -9,7 +9,7 @@ import numpy as np
 from twin.archive.foreign import is_run, read_numbers
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError, MeasuredError
-from twin.measured.formats.table import Table, table
+from twin.measured.table import Table, table
 
 
 def read_mcap(path: Path, group: str | None = None) -> Table:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import MeasuredError
-from twin.measured.formats.table import Table, table
+from twin.measured.table import Table, table
 
 
 def read_parquet(path: Path) -> Table:

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.errors import MeasuredError
 from twin.measured.formats.arrays_in import Named, columns_table
-from twin.measured.formats.table import Table
+from twin.measured.table import Table
 
 _UNIT_KEYS = ("unit_string", "NI_UnitDescription", "Unit", "unit", "NI_UnitSymbol")
 

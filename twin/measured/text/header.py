@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from twin.errors import MeasuredError
-from twin.measured.formats.text_layout import Layout, fields_of, number
+from twin.measured.text.layout import Layout, fields_of
 from twin.measured.units import find_unit, is_unit_text
 
 _RATE = re.compile(
@@ -25,6 +25,8 @@ _INTERVAL = re.compile(
     re.IGNORECASE,
 )
 _COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+|;+|')\s*")
+#: A column of remarks, which may be empty throughout.
+_REMARK = re.compile(r"comment|remark|note|bemerkung|kommentar|event|status", re.IGNORECASE)
 #: A name with its unit in brackets, in a line that is set apart by blanks.
 _WITH_UNIT = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 
@@ -54,7 +56,10 @@ def find_header(
     above = [fields for line in lines[: layout.first] if (fields := _fields(line, layout))]
     units = _units_row(above, layout)
     rows = above[:-1] if units else above
-    names = rows[-1] if rows and _is_names(rows[-1], layout) else None
+    last = rows[-1] if rows else []
+    if len(last) == layout.width + 1 and _REMARK.match(last[-1]):
+        last = last[:-1]
+    names = last if _is_names(last, layout) else None
     seen = tuple(tuple(row) for row in (names, units) if row)
     spare = tuple(units) if units else ("",) * layout.width
     if columns is not None:
@@ -64,10 +69,12 @@ def find_header(
                 f"{', '.join(columns)}"
             )
         return Header(tuple(columns), spare, True, seen)
-    if names is None and rows and len(rows[-1]) > 1 and not _is_rate_line(rows[-1]) and _wordy(rows[-1], layout):
+    stated = next((row for row in reversed(rows) if _wordy(row, layout)), [])
+    if names is None and len(stated) > 1 and not _is_rate_line(stated):
+        hint = "; numbers with commas as group marks need quotes" if layout.delimiter == "," else ""
         raise MeasuredError(
-            f"{path}:{layout.first + first_line}: {layout.width} columns of numbers below a header of {len(rows[-1])} "
-            f"names ({', '.join(rows[-1])}); name every column by --columns, or give --delimiter and --decimal"
+            f"{path}:{layout.first + first_line}: {layout.width} columns of numbers below a header of {len(stated)} "
+            f"names ({', '.join(stated)}); name every column by --columns, or give --delimiter and --decimal{hint}"
         )
     if names is None:
         return Header(tuple(f"column{i + 1}" for i in range(layout.width)), spare, False, seen)
@@ -101,11 +108,11 @@ def _units_row(above: Sequence[list[str]], layout: Layout) -> list[str] | None:
 
 def _is_names(row: Sequence[str], layout: Layout) -> bool:
     """Whether a line names the columns: as many fields, and text among them."""
-    return len(row) == layout.width and _wordy(row, layout)
+    return len(row) == layout.width and _wordy(row, layout) and not layout.resembles(row)
 
 
 def _wordy(row: Sequence[str], layout: Layout) -> bool:
-    return any(f and number(f, layout.decimal) is None for f in row)
+    return any(f and layout.marks.number(f) is None for f in row)
 
 
 def _is_rate_line(row: Sequence[str]) -> bool:

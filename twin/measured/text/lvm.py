@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from twin.errors import MeasuredError
-from twin.measured.formats.table import Table
-from twin.measured.formats.text import text_of
-from twin.measured.formats.text_layout import number
+from twin.measured.table import Table
+from twin.measured.text.marks import Marks
+from twin.measured.text.reader import text_of
 
 _END = "***End_of_Header***"
 _MAGIC = "LabVIEW Measurement"
@@ -126,7 +126,7 @@ def _segment(
         if not lines[index].strip():
             continue
         fields = [f.strip() for f in lines[index].split(delimiter)][: len(names)]
-        values = [number(f, decimal) for f in fields] + [math.nan] * (len(names) - len(fields))
+        values = [Marks(decimal).number(f) for f in fields] + [math.nan] * (len(names) - len(fields))
         if None in values:
             bad = fields[values.index(None)]
             raise MeasuredError(f"{path}:{index + 1}: {bad!r} is not a number, expected {len(names)} numbers")
@@ -142,7 +142,7 @@ def _rate_hz(head: dict[str, list[str]]) -> float | None:
 
 def _first_number(fields: Sequence[str], decimal: str) -> float | None:
     for field in fields:
-        value = number(field.strip(), decimal)
+        value = Marks(decimal).number(field.strip())
         if value is not None and not math.isnan(value):
             return value
     return None

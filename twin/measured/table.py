@@ -24,6 +24,8 @@ class Table:
         row_word: what ``rows`` counts: ``line``, ``row``, ``sample``.
         rate_hz: sampling rate that the file states, or None.
         start_s: time of the first sample where there is no column of time.
+        clock: the column that was made of dates and times of day, s from the first one; None without.
+        not_read: columns that are in the file and not here, each with the reason.
         named: whether the names are the file's or the user's own, not numbers given here.
     """
 
@@ -35,8 +37,10 @@ class Table:
     row_word: str = "row"
     rate_hz: float | None = None
     start_s: float = 0.0
+    clock: int | None = None
     named: bool = True
     notes: tuple[str, ...] = field(default=())
+    not_read: tuple[str, ...] = field(default=())
 
 
 def table(
@@ -48,6 +52,7 @@ def table(
     start_s: float = 0.0,
     row_word: str = "sample",
     notes: Sequence[str] = (),
+    not_read: Sequence[str] = (),
 ) -> Table:
     """A table from columns of equal length.
 
@@ -74,4 +79,5 @@ def table(
         rate_hz=rate_hz,
         start_s=start_s,
         notes=tuple(notes),
+        not_read=tuple(not_read),
     )

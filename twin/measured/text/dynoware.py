@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from twin.measured.formats.table import Table
-from twin.measured.formats.text import parse_text, text_of
+from twin.measured.table import Table
+from twin.measured.text.reader import parse_text, text_of
 
 _SAMPLES = re.compile(r"^Samples per channel\s*:?\s*[:,;\t]+\s*(\d+)", re.IGNORECASE | re.MULTILINE)
 _CYCLES = re.compile(r"^Cycles\s*:?\s*[:,;\t]+\s*(\d+)", re.IGNORECASE | re.MULTILINE)
@@ -26,7 +26,7 @@ def read_dynoware(
     """An export; its header's rate, number of samples and cycles are held against the rows.
 
     Raises:
-        MeasuredError: as `twin.measured.formats.text.read_text`.
+        MeasuredError: as `twin.measured.text.reader.read_text`.
     """
     text = text_of(path)
     read = parse_text(path, text, columns=columns, delimiter=delimiter, decimal=decimal, format_name="DynoWare export")

@@ -1,0 +1,151 @@
+"""Dates and times of day in text, as seconds from the first one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date
+from functools import lru_cache
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from twin.arrays import FloatArray
+
+DAY_S, HOUR_S = 86400.0, 3600.0
+_MONTHS = {
+    name: number
+    for number, names in enumerate(
+        (
+            *("jan ene gen", "feb fev", "mar mär mrz maa", "apr abr avr", "may mai mei maj mag", "jun jui giu"),
+            *("jul lug", "aug ago aou aoû", "sep set", "oct okt ott out", "nov", "dec dez dic déc des"),
+        ),
+        start=1,
+    )
+    for name in names.split()
+}
+_TIME = (
+    r"(?P<h>\d{1,3}):(?P<m>\d{2}):(?P<s>\d{2})(?:[.,](?P<f>\d+)|:(?P<ms>\d{3}))?"
+    r"\s*(?P<half>[AaPp]\.?[Mm]\.?)?(?:\s*(?:Z|UTC|[+-]\d{2}:?\d{2}))?"
+)
+_WORD = r"[^\W\d_]{3,9}"
+_DATE = (
+    r"(?:[A-Za-z]{2,3}[.,]?\s+)?(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}(?P<mark>[-/.])\d{1,2}(?P=mark)(?:\d{4}|\d{2})|"
+    rf"\d{{1,2}}[-\s./]+{_WORD}[-\s./,]+\d{{4}}|{_WORD}[-\s.]+\d{{1,2}}[-\s,]+\d{{4}}|\d{{4}}[-\s]+{_WORD}[-\s]+\d{{1,2}})"
+)
+_TIME_ONLY = re.compile(rf"{_TIME}$")
+_SHORT = re.compile(r"(?P<m>\d{1,3}):(?P<s>\d{2})[.,](?P<f>\d+)$")
+_DATE_ONLY = re.compile(rf"{_DATE}$")
+_STAMP = re.compile(rf"{_DATE}(?:T|[\s,_]+){_TIME}$")
+_TIME_FIRST = re.compile(rf"{_TIME}[\s,]+{_DATE}$")
+
+#: A date, a time of day, both, or minutes and seconds.
+ClockKind: TypeAlias = Literal["date", "time", "stamp", "minutes"]
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A field that is a date, a time, or both: the date as written, and the seconds of the day or hour."""
+
+    kind: ClockKind
+    date: str
+    seconds: float
+
+
+def moment(text: str) -> Moment | None:
+    """A field as a moment, None where it is not one: ``12:30:01.25``, ``1/2/2020 10:00:00 AM``, ``02.01.2020``."""
+    if ":" in text:
+        if found := _TIME_ONLY.match(text):
+            return _moment("time", "", found)
+        if found := _STAMP.match(text) or _TIME_FIRST.match(text):
+            return _moment("stamp", found["date"], found)
+        if found := _SHORT.match(text):
+            return Moment("minutes", "", 60.0 * int(found["m"]) + float(f"{found['s']}.{found['f']}"))
+        return None
+    found = _DATE_ONLY.match(text)
+    return Moment("date", found["date"], 0.0) if found is not None and any(_readings(found["date"])) else None
+
+
+def _moment(kind: ClockKind, day: str, found: re.Match[str]) -> Moment | None:
+    hours = int(found["h"])
+    if found["half"]:
+        if not 1 <= hours <= 12:
+            return None
+        hours = hours % 12 + (12 if found["half"][0] in "pP" else 0)
+    if day and not any(_readings(day)):
+        return None
+    seconds = float(f"{found['s']}.{found['f'] or found['ms'] or 0}")
+    return Moment(kind, day, HOUR_S * hours + 60.0 * int(found["m"]) + seconds)
+
+
+@lru_cache(maxsize=1024)
+def _readings(text: str) -> tuple[date | None, date | None]:
+    """A date with month and day in their likelier order, and in the other one where both occur."""
+    pieces = [p for p in re.split(r"[-/.,\s]+", text) if p]
+    words = [p for p in pieces if not p.isdigit()]
+    if words:
+        month = _MONTHS.get(words[0].lower()[:3])
+        day, year = sorted(int(p) for p in pieces if p.isdigit())
+        only = None if month is None else _date(year, month, day)
+        return only, only
+    a, b, c = map(int, pieces)
+    if len(pieces[0]) == 4:
+        return _date(a, b, c), _date(a, b, c)
+    year = c if c >= 100 else 2000 + c
+    day_first, month_first = _date(year, b, a), _date(year, a, b)
+    if "." in text:
+        return day_first, day_first
+    return (month_first, day_first) if "/" in text else (day_first, month_first)
+
+
+def _date(year: int, month: int, day: int) -> date | None:
+    try:
+        return date(year, month, day)
+    except ValueError:
+        return None
+
+
+def seconds_of(dates: Sequence[str], seconds: FloatArray, kind: ClockKind) -> tuple[FloatArray, list[str]]:
+    """Seconds from the first moment, and notes.
+
+    Where a time of day without dates, or with the same date throughout, falls by more than half a day, a midnight
+    lies between; with minutes and seconds it is a full hour.
+
+    Args:
+        dates: of each row as written, ``""`` without.
+        seconds: shape (n,), of the day, or of the hour; NaN where there is none.
+
+    Raises:
+        ValueError: dates that no order of day and month fits.
+    """
+    days, notes = _days(dates)
+    t_s = seconds + DAY_S * days
+    good = np.flatnonzero(np.isfinite(t_s))
+    if len(good) and not np.any(days):
+        period = HOUR_S if kind == "minutes" else DAY_S
+        turns = np.cumsum(np.diff(t_s[good]) < -0.5 * period)
+        if len(turns) and turns[-1]:
+            t_s[good[1:]] += period * turns
+            notes.append(f"time passes {'a full hour' if kind == 'minutes' else 'midnight'}: counted on")
+    return (t_s - t_s[good[0]] if len(good) else t_s), notes
+
+
+def _days(dates: Sequence[str]) -> tuple[FloatArray, list[str]]:
+    """Days from the first date; of two orders of day and month the one that spans fewer days.
+
+    Raises:
+        ValueError: no order fits all dates.
+    """
+    distinct = [d for d in dict.fromkeys(dates) if d]
+    if not distinct:
+        return np.zeros(len(dates)), []
+    orders = [[d.toordinal() for each in distinct if (d := _readings(each)[k]) is not None] for k in (0, 1)]
+    orders = [o for o in orders if len(o) == len(distinct)]
+    if not orders:
+        raise ValueError(f"no order of day and month fits {distinct[0]} to {distinct[-1]}")
+    chosen = min(orders, key=lambda o: max(o) - min(o))
+    known = {d: float(o - chosen[0]) for d, o in zip(distinct, chosen, strict=True)}
+    unclear = len(distinct) > 1 and orders[0] != orders[-1]
+    notes = [f"date {distinct[0]} read as {date.fromordinal(chosen[0]).isoformat()}"] if unclear else []
+    return np.array([known.get(d, 0.0) for d in dates]), notes
