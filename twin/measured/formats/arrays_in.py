@@ -5,17 +5,17 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from twin.arrays import FloatArray
 from twin.errors import MeasuredError
 from twin.measured.axes import guess_map
+from twin.measured.formats.one_clock import Named, on_one_clock
 from twin.measured.table import Table, table
-from twin.measured.units import find_unit, split_unit
+from twin.measured.units import TIME_NAME, find_unit, split_unit
 
 #: A matrix with more columns than this is not a log.
 _MOST_COLUMNS = 64
@@ -26,15 +26,6 @@ _INTERVAL = re.compile(
     r"^(?:dt|ts|delta_?t|increment|wf_increment|sampl\w*[\s_]*(?:interval|period|time))$", re.IGNORECASE
 )
 _START = re.compile(r"^(?:t0|t_0|start|wf_start_offset|start_?time)$", re.IGNORECASE)
-
-
-@dataclass(frozen=True, slots=True)
-class Named:
-    """An array with its path in the container, ``group/name``, and its unit, ``""`` if not stated."""
-
-    name: str
-    unit: str
-    values: FloatArray
 
 
 def columns_table(
@@ -51,19 +42,48 @@ def columns_table(
     """
     arrays = _in_group(path, arrays, group)
     columns = [column for a in arrays for column in _columns(a)]
-    lengths = Counter(len(c.values) for c in columns)
-    if not lengths:
+    if not columns:
         raise MeasuredError(f"{path}: no arrays of numbers found, expected a time and forces ({format_name})")
-    length = max(lengths, key=lambda n: (lengths[n], n))
-    chosen = [c for c in columns if len(c.values) == length]
-    notes = []
-    if left := [c.name for c in columns if len(c.values) != length]:
-        notes.append(f"of another length than {length}, not read: {', '.join(left[:6])}{', ...' if left[6:] else ''}")
-    chosen = _short_names(chosen)
-    _refuse_several(path, chosen)
+    columns = _short_names(columns)
+    needed = _needed(columns)
+    if not needed:
+        columns, left = _of_one_length(columns)
+        needed = [c.name for c in columns]
+    else:
+        left = []
+    _refuse_several(path, columns)
+    aligned = on_one_clock(path, columns, needed)
+    left += aligned.not_read
+    notes = [f"of another length, not read: {', '.join(left[:6])}"] if left and not aligned.not_read else []
     rate_hz, start_s = _clock(scalars)
-    rows = [(c.name, c.unit, c.values) for c in chosen]
-    return table(path, format_name, rows, rate_hz=rate_hz, start_s=start_s, notes=notes)
+    return table(
+        path,
+        format_name,
+        [(c.name, c.unit, c.values) for c in aligned.columns],
+        rate_hz=aligned.rate_hz or rate_hz,
+        start_s=start_s if aligned.start_s is None else aligned.start_s,
+        notes=[*notes, *aligned.notes],
+        not_read=left,
+    )
+
+
+def _needed(columns: Sequence[Named]) -> list[str]:
+    """The columns named after the forces, and the time if it is about as long; none where names do not show."""
+    forces = guess_map(c.name for c in columns)
+    if forces is None:
+        return []
+    found = [name for _, name in forces.entries]
+    longest = max(len(c.values) for c in columns if c.name in found)
+    times = [c.name for c in columns if TIME_NAME.match(split_unit(c.name)[0]) and 2 * len(c.values) >= longest]
+    return [*times[:1], *found]
+
+
+def _of_one_length(columns: Sequence[Named]) -> tuple[list[Named], list[str]]:
+    """The columns of the commonest length, and the others with theirs."""
+    lengths = Counter(len(c.values) for c in columns)
+    length = max(lengths, key=lambda n: (lengths[n], n))
+    left = [f"{c.name} ({len(c.values)} samples)" for c in columns if len(c.values) != length]
+    return [c for c in columns if len(c.values) == length], left
 
 
 def _in_group(path: Path, arrays: Sequence[Named], group: str | None) -> list[Named]:
@@ -80,10 +100,10 @@ def _columns(array: Named) -> list[Named]:
     """The columns that an array holds."""
     values = np.squeeze(array.values)
     if values.ndim == 1 and values.size >= 2:
-        return [Named(array.name, array.unit, values)]
+        return [replace(array, values=values)]
     if values.ndim == 2 and min(values.shape) <= _MOST_COLUMNS:
         values = values if values.shape[0] >= values.shape[1] else values.T
-        return [Named(f"{array.name}[{i + 1}]", array.unit, values[:, i]) for i in range(values.shape[1])]
+        return [replace(array, name=f"{array.name}[{i + 1}]", values=values[:, i]) for i in range(values.shape[1])]
     return []
 
 
@@ -92,7 +112,7 @@ def _short_names(columns: list[Named]) -> list[Named]:
     short = [c.name.rpartition("/")[2] for c in columns]
     if len(set(short)) < len(short):
         return columns
-    return [Named(name, c.unit, c.values) for name, c in zip(short, columns, strict=True)]
+    return [replace(c, name=name) for name, c in zip(short, columns, strict=True)]
 
 
 def _refuse_several(path: Path, columns: list[Named]) -> None:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from twin.errors import MeasuredError
-from twin.measured.formats.arrays_in import Named, columns_table
+from twin.measured.formats.arrays_in import columns_table
+from twin.measured.formats.one_clock import Named
 from twin.measured.table import Table
 
 _UNIT_KEYS = ("unit", "units", "unit_string", "engineeringunit", "si_unit", "y_unit")

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from twin.errors import MeasuredError
-from twin.measured.formats.arrays_in import Named, columns_table, flatten
+from twin.measured.formats.arrays_in import columns_table, flatten
 from twin.measured.formats.hdf5 import read_hdf5
+from twin.measured.formats.one_clock import Named
 from twin.measured.table import Table
 
 _HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"

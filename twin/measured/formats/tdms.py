@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from twin.errors import MeasuredError
-from twin.measured.formats.arrays_in import Named, columns_table
+from twin.measured.formats.arrays_in import columns_table
+from twin.measured.formats.one_clock import Named
 from twin.measured.table import Table
 
+#: LabVIEW writes the beginning of its own time where no start is known.
+_NO_START = np.datetime64("1970-01-01T00:00:00", "us")
 _UNIT_KEYS = ("unit_string", "NI_UnitDescription", "Unit", "unit", "NI_UnitSymbol")
 
 
@@ -27,23 +31,34 @@ def read_tdms(path: Path, group: str | None = None) -> Table:
     except Exception as error:  # npTDMS raises many kinds on damaged files
         raise MeasuredError(f"{path}: no TDMS file that can be read: {error}") from error
     arrays: list[Named] = []
-    increments: dict[str, float] = {}
-    starts: list[float] = []
+    starts: dict[str, tuple[Any, float]] = {}
     for part in file.groups():
         for channel in part.channels():
-            name = f"{part.name}/{channel.name}"
             values = _numbers(channel)
             if values is None:
                 continue
-            arrays.append(Named(name, _unit(channel), values))
-            if "wf_increment" in channel.properties and (group is None or part.name == group):
-                increments[name] = float(channel.properties["wf_increment"])
-                starts.append(float(channel.properties.get("wf_start_offset", 0.0)))
-    if len({round(i, 12) for i in increments.values()}) > 1:
-        listed = ", ".join(f"{name} {1.0 / i:g} Hz" for name, i in increments.items() if i > 0.0)
-        raise MeasuredError(f"{path}: channels at several rates: {listed}; choose a group of one rate by --group")
-    scalars = {"wf_increment": next(iter(increments.values())), "t0": starts[0]} if increments else {}
-    return columns_table(path, "TDMS", arrays, scalars, group)
+            name, properties = f"{part.name}/{channel.name}", channel.properties
+            step = float(properties.get("wf_increment", 0.0))
+            arrays.append(Named(name, _unit(channel), values, 1.0 / step if step > 0.0 else None))
+            starts[name] = properties.get("wf_start_time"), float(properties.get("wf_start_offset", 0.0))
+    return columns_table(path, "TDMS", _started(arrays, starts), {}, group)
+
+
+def _started(arrays: list[Named], starts: dict[str, tuple[Any, float]]) -> list[Named]:
+    """The channels with the time of their first sample: start time of the waveform and offset from it.
+
+    A file without start times, or with one for all, counts from it.
+    """
+    moments = {n: np.datetime64(t).astype("datetime64[us]") for n, (t, _) in starts.items() if t is not None}
+    moments = {n: t for n, t in moments.items() if t > _NO_START}
+    first = min(moments.values(), default=_NO_START)
+    made = []
+    for array in arrays:
+        moment, offset = moments.get(array.name), starts[array.name][1]
+        known = moment is not None or not moments
+        seconds = 0.0 if moment is None else float((moment - first) / np.timedelta64(1, "s"))
+        made.append(replace(array, start_s=seconds + offset if known else None))
+    return made
 
 
 def _unit(channel: Any) -> str:

@@ -99,6 +99,11 @@ def _readings(text: str) -> tuple[date | None, date | None]:
     return (month_first, day_first) if "/" in text else (day_first, month_first)
 
 
+def day_of(text: str) -> date | None:
+    """A date in the likelier order of day and month."""
+    return next((d for d in _readings(text) if d is not None), None)
+
+
 def _date(year: int, month: int, day: int) -> date | None:
     try:
         return date(year, month, day)
