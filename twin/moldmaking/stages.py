@@ -6,11 +6,13 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Literal, TypeAlias
 
 import numpy as np
 
 from twin.arrays import FloatArray
+from twin.cam.passes.clear_moves import ClearOptions, part_obstacle, with_clear_moves
 from twin.cam.passes.finishing import FinishingOptions, finishing, stepover_for_scallop
 from twin.cam.passes.raster_baseline import row_cuts, scanned
 from twin.cam.passes.roughing import RoughingOptions, Workspace, contour_roughing
@@ -19,12 +21,11 @@ from twin.cam.path.machining_time import PathTime, machining_time
 from twin.cam.path.toolpath import ToolPath
 from twin.cam.path.tour import METHODS, Search
 from twin.cam.stock.dexel import Dexels
-from twin.cam.stock.strokes import Strokes
 from twin.cam.surface.drop_cutter import DropCutter
 from twin.cam.surface.surface import surface_of_mesh
 from twin.moldmaking import checks
 from twin.moldmaking.load import shape_of
-from twin.moldmaking.model import MoldJob, StageTable
+from twin.moldmaking.model import LevelStage, MoldJob, StageTable
 from twin.planning.paths import Progress, silent
 from twin.tools.shape import ToolShape
 from twin.workpiece.from_mesh import load_mesh
@@ -196,7 +197,8 @@ class MoldPlan:
         begin, table = time.perf_counter(), self.job.rough
         tool = self.shape(table)
         path = contour_roughing(self.space, tool, self.roughing_options, self.cutter(table).drop)
-        return self._result("rough", path, self.fresh_stock(), tool, begin, {})
+        stock = self.fresh_stock()
+        return self._result("rough", self._cleared(table, path, stock), stock, begin)
 
     @cached_property
     def semi(self) -> StageResult:
@@ -208,19 +210,21 @@ class MoldPlan:
         levels = remaining_cuts(
             self.space, tool, options, stock, lambda k, n: self._at("semi", "finding rest material", 0.7 * k / n)
         )
-        best: tuple[ToolPath, PathTime] | None = None
+        best: tuple[ToolPath, PathTime, Dexels] | None = None
         times: dict[str, PathTime] = {}
         for method in METHODS[: METHODS.index(table.method) + 1]:
             self._at("semi", f"ordering, {method}", 0.7 + 0.1 * METHODS.index(method))
             search = replace(options.search, method=method)
             path = semi_finishing(self.space, tool, replace(options, search=search), dynamics, levels, before)
+            after = before.copy()
+            path = self._cleared(table, path, after)
             spent = machining_time(path, dynamics)
             # the search's times ignore corners; a path that takes longer on the machine is not used
             if best is None or spent.total_s < best[1].total_s:
-                best = path, spent
+                best = path, spent, after
             times[method] = best[1]
         assert best is not None
-        return self._result("semi", best[0], before.copy(), tool, begin, times)
+        return self._result("semi", best[0], best[2], begin, times)
 
     @cached_property
     def finish(self) -> StageResult:
@@ -230,7 +234,8 @@ class MoldPlan:
         begin = time.perf_counter()
         cutter = self.cutter(self.job.finish)
         path = finishing(self.space, cutter, self.finishing_options, before, self.job.machine.dynamics)
-        return self._result("finish", path, before.copy(), self.shape(self.job.finish), begin, {})
+        stock = before.copy()
+        return self._result("finish", self._cleared(self.job.finish, path, stock), stock, begin)
 
     @cached_property
     def raster_baseline(self) -> RasterBaseline:
@@ -270,17 +275,24 @@ class MoldPlan:
         low, high = _SHARES[stage]
         self._progress(task, low + share * (high - low))
 
+    def _cleared(self, table: StageTable, path: ToolPath, stock: Dexels) -> ToolPath:
+        """A stage's path with rapids and links clear of part and stock; the stock is cut by it."""
+        allowance = table.allowance_mm if isinstance(table, LevelStage) else 0.0
+        part = part_obstacle(self.surface, self.shape(table), allowance, self.cutter(table))
+        clear = ClearOptions(
+            safe_z_mm=self.space.safe_z_mm, clearance_mm=self.space.clearance_mm, feed_mm_min=table.feeds.link
+        )
+        return with_clear_moves(path, clear, part, stock)
+
     def _result(
         self,
         stage: Stage,
         path: ToolPath,
         stock: Dexels,
-        tool: ToolShape,
         begin: float,
-        by_method: Mapping[str, PathTime],
+        by_method: Mapping[str, PathTime] = MappingProxyType({}),
     ) -> StageResult:
-        """A finished stage; its path is cut from the stock."""
-        stock.cut(tool, Strokes.of_path(path))
+        """A finished stage."""
         return StageResult(
             stage=stage,
             path=path,

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
 
 from twin.arrays import FloatArray
+from twin.cam.passes.clear_moves import ClearOptions, part_obstacle, with_clear_moves
 from twin.cam.passes.contour import ContourOptions, OutlineLinkPlanner, contour_passes, level_heights, levels_of
 from twin.cam.passes.scan import ACROSS, Rows, ScanOptions, row_positions, scan_passes
 from twin.cam.path.arc_fit import FitOptions, Side, fit_path
@@ -35,7 +37,6 @@ from twin.geometry.polygons.region import Region
 from twin.planning.settings import PathSettings
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
-from twin.workpiece.from_mesh import Solid
 
 #: Called while work goes on: the current task, and the share of it that is done, 0 to 1.
 Progress: TypeAlias = Callable[[str, float], None]
@@ -59,7 +60,7 @@ _AIR_MM = 0.01
 SAFE_ABOVE_MM = 5.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class PlanSetup:
     """A part made ready for planning.
 
@@ -82,6 +83,13 @@ class PlanSetup:
     stock_mm: FloatArray
     floor_mm: float
     safe_mm: float
+
+    @cached_property
+    def surface(self) -> Surface:
+        """The part's surface, without vertices that only triangles without area used."""
+        mesh = self.part.mesh
+        used = mesh.used
+        return surface_of_mesh(mesh.vertices_mm[used], (np.cumsum(used) - 1)[mesh.triangles])
 
 
 def silent(task: str, share: float) -> None:
@@ -157,7 +165,21 @@ def plan(settings: PathSettings, setup: PlanSetup, progress: Progress = silent) 
     progress("linking", 1.0)
     moves = link(passes, _link_options(settings, setup), planner)
     made = ToolPath(moves=moves, tool=setup.tool, name=_name(settings), notes=_notes(settings, setup))
-    return _fitted(made, settings)
+    return _cleared(_fitted(made, settings), settings, setup)
+
+
+def _cleared(path: ToolPath, settings: PathSettings, setup: PlanSetup) -> ToolPath:
+    """The path with rapids above the part and its allowance, and links no deeper in it than the tolerance."""
+    clear = ClearOptions(
+        safe_z_mm=setup.safe_mm,
+        clearance_mm=settings.clearance_mm,
+        feed_mm_min=settings.link_mm_min or settings.feed_mm_min,
+    )
+    part, links = (
+        part_obstacle(setup.surface, setup.tool, left)
+        for left in (settings.allowance_mm, settings.allowance_mm - settings.tolerance_mm)
+    )
+    return with_clear_moves(path, clear, part, links=links)
 
 
 def _scan(settings: PathSettings, setup: PlanSetup, progress: Progress) -> tuple[tuple[Pass, ...], LinkPlanner]:
@@ -169,7 +191,7 @@ def _scan(settings: PathSettings, setup: PlanSetup, progress: Progress) -> tuple
     apart = max(settings.pitch_mm, _POINTS_APART * setup.tool.corner_radius_mm)
     samples = Samples.between(float(low[along]), float(high[along]), apart)
     planner = SurfaceLinkPlanner(
-        lambda: _surface(setup.part.mesh),
+        lambda: setup.surface,
         setup.tool,
         allowance_mm=settings.allowance_mm,
         remaining_mm=settings.remaining_mm,
@@ -210,12 +232,6 @@ def _rows(
     return lambda left: cl_lines(
         profiles, element, at, samples, setup.floor_mm + left, allowance_mm=left, chord_mm=chord
     )
-
-
-def _surface(mesh: Solid) -> Surface:
-    """The part's surface, without vertices that only triangles without area used."""
-    used = mesh.used
-    return surface_of_mesh(mesh.vertices_mm[used], (np.cumsum(used) - 1)[mesh.triangles])
 
 
 def _approach(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -15,6 +15,7 @@ from twin.cam.path.toolpath import ToolPath
 from twin.cam.slices.sections import SlicedPart
 from twin.errors import ToolPathError
 from twin.planning.accuracy import pitch_bound_mm
+from twin.planning.gouges import Gouge, deepest_gouge
 from twin.planning.output_files import check_outputs
 from twin.planning.paths import PlanSetup, Progress, plan, prepare, silent
 from twin.planning.replay_job import replay_tables, write_replay_job
@@ -34,6 +35,7 @@ class PlannedPath:
         setup: part, tool and stock.
         path: the moves of the tool tip; none where the tool cannot cut anything.
         pitch_bound_mm: bound on the error between the part's slices, see `twin.planning.accuracy`.
+        gouge: the deepest gouge of the path on the part's triangles, None where none is deeper than the tolerance.
         computed_s: computing time.
     """
 
@@ -41,6 +43,7 @@ class PlannedPath:
     setup: PlanSetup
     path: ToolPath
     pitch_bound_mm: float
+    gouge: Gouge | None
     computed_s: float
 
     @property
@@ -50,15 +53,24 @@ class PlannedPath:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """A warning where the part's slices may be too far apart for the required accuracy."""
-        settings = self.settings
-        if self.pitch_bound_mm <= settings.tolerance_mm:
-            return ()
+        """Warnings where the path gouges the part, or its slices may be too far apart for the required accuracy."""
+        return tuple(self._warnings())
+
+    def _warnings(self) -> Iterator[str]:
+        settings, found = self.settings, self.gouge
         other = "; --exact makes rows from the triangles instead" if settings.strategy == "scan" else ""
-        return (
-            f"pitch_mm = {settings.pitch_mm:g} may be too coarse: details between slices are accurate to "
-            f"{self.pitch_bound_mm:.3g} mm, more than tolerance_mm = {settings.tolerance_mm:g}{other}",
-        )
+        if found is not None:
+            x, y, z = found.point_mm
+            yield (
+                f"the path gouges the part by {found.depth_mm:.3g} mm at X{x:.3f} Y{y:.3f} Z{z:.3f}, more than "
+                f"tolerance_mm = {settings.tolerance_mm:g}: a smaller pitch_mm is needed than {settings.pitch_mm:g}"
+                f"{other if not settings.exact else ''}"
+            )
+        if self.pitch_bound_mm > settings.tolerance_mm:
+            yield (
+                f"pitch_mm = {settings.pitch_mm:g} may be too coarse: details between slices are accurate to "
+                f"{self.pitch_bound_mm:.3g} mm, more than tolerance_mm = {settings.tolerance_mm:g}{other}"
+            )
 
     @property
     def operation(self) -> Operation:
@@ -128,11 +140,14 @@ def plan_paths(
     begin = time.perf_counter()
     setup = prepare(settings, part, progress)
     path = plan(settings, setup, progress)
+    progress("checking", 1.0)
+    gouge = deepest_gouge(path, setup.surface, settings.allowance_mm, settings.tolerance_mm)
     return PlannedPath(
         settings=settings,
         setup=setup,
         path=path,
         pitch_bound_mm=pitch_bound_mm(settings, setup),
+        gouge=gouge,
         computed_s=time.perf_counter() - begin,
     )
 

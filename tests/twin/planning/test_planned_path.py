@@ -87,8 +87,10 @@ def test_a_coarse_pitch_gives_a_warning(planned: PlannedPath, part: Path) -> Non
     coarse = plan_paths(
         slope, strategy="scan", tool="ball 4", direction="y", pitch_mm=0.5, stepover_mm=2.0, tolerance_mm=0.001
     )
-    (warning,) = coarse.warnings
+    gouge, warning = coarse.warnings
     assert "pitch_mm = 0.5 may be too coarse" in warning and coarse.pitch_bound_mm > 0.001
+    assert coarse.gouge is not None and 0.001 < coarse.gouge.depth_mm < coarse.pitch_bound_mm
+    assert gouge.startswith(f"the path gouges the part by {coarse.gouge.depth_mm:.3g} mm at X")
 
 
 def test_an_empty_path_is_not_written(part: Path, tmp_path: Path) -> None:

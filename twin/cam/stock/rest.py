@@ -146,12 +146,16 @@ def allowed_heights(
 
 
 def grown(tool: ToolShape, by_mm: float) -> ToolShape:
-    """The tool with all its surface moved out along the normal; its tip is lower by as much."""
+    """The tool with all its surface moved out along the normal, or in where ``by_mm`` is below 0.
+
+    Its tip is lower by as much, or higher. A corner radius smaller than a move inwards becomes a sharp corner.
+    """
     if by_mm == 0.0:
         return tool
+    corner = tool.corner_radius_mm + by_mm
     return ToolShape(
-        disc_mm=tool.disc_mm,
-        corner_radius_mm=tool.corner_radius_mm + by_mm,
+        disc_mm=tool.disc_mm if corner >= 0.0 else max(tool.disc_mm + corner, 0.0),
+        corner_radius_mm=max(corner, 0.0),
         taper_rad=tool.taper_rad,
         height_mm=tool.height_mm + by_mm,
     )
