@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcode.cycles import (
@@ -22,7 +24,13 @@ CONTROLS = [FANUC_CYCLES, HAAS_CYCLES, LINUXCNC_CYCLES]
 #: Cycles of which every control makes the bottom the deepest level, below R.
 DOWNWARD = ["G73", "G74", "G81", "G82", "G83", "G84", "G85", "G86", "G89"]
 CASES = [pytest.param(rules, code, id=f"{rules.name}-{code}") for rules in CONTROLS for code in DOWNWARD]
-every_cycle = pytest.mark.parametrize(("rules", "code"), CASES)
+
+
+def every_cycle(law: Callable[..., None]) -> Callable[..., None]:
+    """A law for each cycle of each control, with some thousand holes in all."""
+    return pytest.mark.parametrize(("rules", "code"), CASES)(settings(max_examples=50)(law))
+
+
 NEAR = 1e-9
 
 #: Lengths of which sums and differences are exact, so that no law depends on rounding.

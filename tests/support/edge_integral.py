@@ -67,7 +67,7 @@ class Pass:
             theta = behind - angle_rad[:, None]
             c, t = np.cos(theta), np.sin(theta)
             chip = np.full(theta.shape, np.inf)
-            for back in range(1, self.teeth + 1):
+            for back in range(1, (self.teeth if self.runout else 1) + 1):  # alike teeth: the one before cut the most
                 earlier = np.cos(toward + behind - 2.0 * math.pi * back / self.teeth)
                 out_by = self.runout * (np.cos(toward + behind) - earlier)
                 chip = np.minimum(chip, back * chip_feed * c * sk + out_by * sk)

@@ -14,7 +14,8 @@ from twin.arrays import FloatArray
 from twin.tools.shape import ToolShape
 
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-_STEPS = 50
+#: Narrows 10 mm to 4e-8 mm.
+_STEPS = 40
 #: Slope at which the tool's underside goes on beyond its radius, steeper than any face of a test.
 _BEYOND = 1e6
 

@@ -155,10 +155,12 @@ def _best_phase(model: Model, measured: Measured, k: FloatArray, runout_mm: Floa
     """The phase on a grid with the largest correlation of measured and fitted waveform."""
     c = measured_harmonics(measured)[:, measured.axes]
     fitted = model.harmonics(len(c) - 1, runout_mm)[:, measured.axes] @ k
-    cross = (np.conj(c) * fitted).sum(axis=1)[1:]
-    phases = np.arange(_PHASE_GRID) * (2.0 * math.pi / _PHASE_GRID)
-    score = (np.exp(1j * np.outer(phases, np.arange(1, len(c)))) @ cross).real
-    return float(phases[int(np.argmax(score))])
+    cross = (np.conj(c) * fitted).sum(axis=1)
+    cross[0] = 0.0  # a mean does not depend on the phase
+    # the sum of cross[h] exp(i h phase) at all phases of the grid; harmonics beyond its length come round again
+    folded = np.zeros(_PHASE_GRID, dtype=np.complex128)
+    np.add.at(folded, np.arange(len(cross)) % _PHASE_GRID, cross)
+    return float(np.argmax(np.fft.ifft(folded).real) * (2.0 * math.pi / _PHASE_GRID))
 
 
 class _Search:
