@@ -17,7 +17,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from twin.cli.run import run as twin
+from twin.cli import run as twin
 
 ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "docs" / "pictures"

@@ -15,7 +15,7 @@ sys.path.insert(0, str(ROOT / "examples" / "torus"))
 
 import make_torus  # noqa: E402
 
-from twin.cli.run import run as twin  # noqa: E402
+from twin.cli import run as twin  # noqa: E402
 
 SMALL = make_torus.Profile(ring_mm=6.0, tube_mm=2.0, outer_mm=1.5, inner_mm=1.0, half_mm=11.0, thick_mm=2.0)
 

@@ -56,6 +56,7 @@ class RunHeader:
         force_on: always ``"tool"`` in records; readers change the sign for the workpiece.
         parameters: every setting that affects the result, as text by job-file key path.
         attachments: job file, NC program, and stock STL if there is one.
+        job: key of the job file's path (`twin.archive.same_job.job_key`), empty if it is not known.
     """
 
     twin_version: str
@@ -67,6 +68,7 @@ class RunHeader:
     force_on: ForceOn = "tool"
     parameters: dict[str, str]
     attachments: tuple[Attachment, ...] = ()
+    job: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,8 +7,6 @@ values reaches the terminal as a control character.
 from __future__ import annotations
 
 import contextlib
-import os
-import signal
 import sys
 import time
 from collections.abc import Iterable, Iterator
@@ -16,7 +14,6 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from gcode.cli import exit_codes
 from gcode.underline import harmless, harmless_json
 
 if TYPE_CHECKING:
@@ -58,20 +55,10 @@ def say_json(text: str) -> None:
 
 
 def fail(message: str) -> None:
-    """Prints an error."""
-    typer.secho("error:", fg=typer.colors.RED, bold=True, err=True, nl=False)
-    say(f" {message}", error=True)
-
-
-def closed_pipe() -> int:
-    """Ends standard output, whose reader is gone, without a message.
-
-    Returns:
-        The exit code.
-    """
-    with contextlib.suppress(OSError, ValueError):  # the rest of the buffer has no reader
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return exit_codes.SIGNAL + signal.SIGPIPE
+    """Prints an error, if standard error takes it."""
+    with contextlib.suppress(OSError):
+        typer.secho("error:", fg=typer.colors.RED, bold=True, err=True, nl=False)
+        say(f" {message}", error=True)
 
 
 def with_progress(events: Iterable[Event], name: str) -> Iterator[Event]:

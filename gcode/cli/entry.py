@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import signal
 import sys
 from collections.abc import Callable, Sequence
@@ -10,23 +9,25 @@ from collections.abc import Callable, Sequence
 import typer
 
 from gcode.cli import exit_codes
+from gcode.cli.signals import end_in_order, ignore_signals
+from gcode.cli.streams import failed_output, finish_streams, prepare_streams
 from gcode.errors import GcodeError
 
 #: Typer's error for a wrong use of the command line. Typer exports this one of its subclasses only.
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 
-def main() -> None:
-    """The console script."""
-    console_script(run)
-
-
 def console_script(run: Callable[[Sequence[str]], int]) -> None:
-    """Carries out the process's own arguments, and exits; characters that a terminal cannot show are replaced."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
-    sys.exit(run(sys.argv[1:]))
+    """Carries out the process's own arguments, and exits."""
+    prepare_streams()
+    end_in_order()
+    try:
+        code = run(sys.argv[1:])
+    except KeyboardInterrupt:
+        code = exit_codes.SIGNAL + signal.SIGINT
+    ignore_signals()
+    finish_streams()
+    sys.exit(code)
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -39,13 +40,13 @@ def run(arguments: Sequence[str]) -> int:
         The exit code, see `gcode.cli.exit_codes`.
     """
     from gcode.cli.app import app
-    from gcode.cli.console import UnusableFileError, closed_pipe, fail
+    from gcode.cli.console import UnusableFileError, fail
 
     try:
         code = carry_out(app, arguments, "gcode")
         sys.stdout.flush()
-    except BrokenPipeError:
-        return closed_pipe()
+    except OSError as error:
+        return failed_output(error)
     except UnusableFileError as error:
         fail(str(error))
     except GcodeError as error:
@@ -81,5 +82,7 @@ def carry_out(app: typer.Typer, arguments: Sequence[str], name: str) -> int:
     except typer.Abort:
         return exit_codes.SIGNAL + signal.SIGINT
     except SystemExit as end:
+        if isinstance(end.__context__, BrokenPipeError):  # typer would end with another code
+            return failed_output(end.__context__)
         code = end.code
     return code if isinstance(code, int) else exit_codes.OK

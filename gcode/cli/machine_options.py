@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from gcode.cli.console import UnusableFileError, closed_pipe
+from gcode.cli.console import UnusableFileError
+from gcode.cli.streams import closed_pipe_ends
 from gcode.errors import GcodeError
 
 if TYPE_CHECKING:
@@ -105,11 +106,9 @@ def with_machine(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_options(**values: Any) -> None:
         setup = setup_of(**{name: values.pop(name) for name in shared})
-        try:
+        with closed_pipe_ends():
             command(**values, setup=setup)
             sys.stdout.flush()
-        except BrokenPipeError:
-            raise typer.Exit(closed_pipe()) from None
 
     options = {name: p for name, p in (own | shared).items() if name != "setup"}
     keyword_only = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in options.values()]

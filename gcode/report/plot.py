@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from gcode.events import ArcMotion, Event, LinearMotion
 from gcode.report.path_geometry import points_mm
+from gcode.whole_file import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,7 +93,8 @@ def plot_path(
     if not path.rapids and not path.feeds:
         raise PlotError(f"{title or 'the program'}: no motion to draw")
     try:
-        _figure(path, view, colour, title).savefig(out, dpi=160, bbox_inches="tight", pad_inches=0.2)
+        with whole_file(out) as partial:
+            _figure(path, view, colour, title).savefig(partial, dpi=160, bbox_inches="tight", pad_inches=0.2)
     except OSError as error:
         raise PlotError(f"{out}: cannot be written: {error.strerror or error}") from None
 

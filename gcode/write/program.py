@@ -17,6 +17,7 @@ from gcode.events import (
     SpindleChange,
     ToolChange,
 )
+from gcode.whole_file import whole_file
 from gcode.write.control_memory import ControlMemory, EventStream
 from gcode.write.machine_functions import coolant, dwell, spindle_change, stop, tool_change
 from gcode.write.motions import motion
@@ -70,16 +71,10 @@ def write_program(path: Path | str, events: Iterable[Event], options: WriteOptio
         OSError: where the file cannot be written.
     """
     path, lines = Path(path), 0
-    partial = path.with_name(f"{path.name}.partial")
-    try:
-        with partial.open("w", encoding="ascii", newline="\n") as file:
-            for line in program_lines(events, options):
-                file.write(f"{line}\n")
-                lines += 1
-        partial.replace(path)
-    except BaseException:
-        partial.unlink(missing_ok=True)
-        raise
+    with whole_file(path) as partial, partial.open("w", encoding="ascii", newline="\n") as file:
+        for line in program_lines(events, options):
+            file.write(f"{line}\n")
+            lines += 1
     return lines
 
 

@@ -18,7 +18,7 @@ from gcode.errors import GcodeError, Place
 from twin import __version__
 from twin.cli import exit_codes as twin_codes
 from twin.cli import run
-from twin.cli.run import message_of
+from twin.cli.entry import message_of
 from twin.errors import JobError, MeshError
 from twin.job import job_schema
 
@@ -141,4 +141,4 @@ def test_no_memory_is_said(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captu
 
     monkeypatch.setattr("twin.job.job_schema", exhausted)
     assert run(["schema"]) == 1
-    assert capsys.readouterr().err == "error: not enough memory; a larger simulation.slice_pitch_mm needs less\n"
+    assert capsys.readouterr().err == "error: not enough memory\n"

@@ -10,7 +10,7 @@ import pytest
 from support.small_parts import pocket, prism, prism_corners, write_stl
 
 from gcode.cli.entry import run as gcode
-from twin.cli.run import run
+from twin.cli import run
 from twin.workpiece.from_mesh import stl_bytes
 
 STEP = prism([(0, -2), (8, -2), (8, 0), (4, 0), (4, 1), (0, 1)], 0.0, 6.0)

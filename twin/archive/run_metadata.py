@@ -68,6 +68,7 @@ def header_metadata(header: RunHeader) -> dict[str, str]:
     """The values of a header without parameters, tools and attachments."""
     data = {name: str(getattr(header, name)) for name in _HEADER_TEXT}
     data |= {name: _json(getattr(header, name)) for name in _HEADER_JSON}
+    data |= {"job": header.job} if header.job else {}
     return data | {"stock_bounds_mm": _json(header.stock_bounds_mm.tolist())}
 
 
@@ -95,6 +96,7 @@ def to_header(data: Mapping[str, str], parameters: Mapping[str, str], files: Seq
         tools=tuple(tools),
         parameters=dict(parameters),
         attachments=tuple(f for f in files if f is not table),
+        job=data.get("job", ""),
     )
 
 

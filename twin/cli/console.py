@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from typing import Any
 
@@ -19,13 +20,15 @@ def errors() -> CleanConsole:
 
 
 def warn(message: str) -> None:
-    """Print something that needs attention; the program goes on."""
-    errors().print(Text.assemble(("warning:", "bold yellow"), " ", message))
+    """Print something that needs attention, if standard error takes it; the program goes on."""
+    with contextlib.suppress(OSError):
+        errors().print(Text.assemble(("warning:", "bold yellow"), " ", message))
 
 
 def fail(message: str) -> None:
-    """Print the error that ended the program."""
-    errors().print(Text.assemble(("error:", "bold red"), " ", message))
+    """Print the error that ended the program, if standard error takes it."""
+    with contextlib.suppress(OSError):
+        errors().print(Text.assemble(("error:", "bold red"), " ", message))
 
 
 def print_json(value: Any) -> None:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from enum import Enum
 from typing import Any, TypeVar
 
-from typer import Exit
 from typer.core import TyperCommand, TyperGroup, TyperOption
 
-from gcode.cli.console import closed_pipe
+from gcode.cli.streams import closed_pipe_ends
 from twin.cli.options import type_metavar
 
 _Parameter = TypeVar("_Parameter")
@@ -31,10 +30,8 @@ class HelpGroup(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         """Carry out a command; a reader that closes the pipe of standard output ends it without a message."""
-        try:
+        with closed_pipe_ends():
             return super().invoke(ctx)
-        except BrokenPipeError:
-            raise Exit(closed_pipe()) from None
 
 
 def _named(parameters: list[_Parameter]) -> list[_Parameter]:

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from twin.archive.same_job import job_key
 from twin.arrays import frozen
 from twin.job import Job
 from twin.record import Attachment, RunHeader, ToolRecord
@@ -32,6 +33,7 @@ def run_header(job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], plan
         planned_time_s=planned_time_s,
         parameters=parameters,
         attachments=tuple(_attachments(job)),
+        job=job_key(job.path),
     )
 
 

@@ -10,6 +10,7 @@ from typing import Self
 from twin.archive.container.interrupt import after_this
 from twin.archive.container.partial import PartialFile
 from twin.archive.run_writer import RunWriter
+from twin.archive.same_job import is_run_of
 from twin.record import Record
 
 
@@ -22,13 +23,14 @@ class McapSink:
     Args:
         path: the run's file; missing folders above it are created.
         force: replace an existing file instead of refusing.
+        job: job file of the run: a file that was made from it is replaced without ``force``.
 
     Raises:
-        ArchiveError: the file already exists, or cannot be created.
+        ArchiveError: the file already exists, another program is writing it, or it cannot be created.
     """
 
-    def __init__(self, path: str | PathLike[str], *, force: bool = False) -> None:
-        self._file = PartialFile(Path(path), force=force)
+    def __init__(self, path: str | PathLike[str], *, force: bool = False, job: Path | None = None) -> None:
+        self._file = PartialFile(Path(path), force=force, replaceable=lambda old: is_run_of(old, job), keep=True)
         self._run = RunWriter(self._file.write)
 
     def write(self, record: Record) -> None:

@@ -14,7 +14,7 @@ Write: TypeAlias = Callable[[Record], None]
 
 
 @contextmanager
-def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool) -> Iterator[Write]:
+def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool, job: Path | None = None) -> Iterator[Write]:
     """Open the requested outputs; yields a function that writes a record to all of them.
 
     They are completed at the end. If the block ends by an exception they are discarded, and no file is left except the
@@ -25,6 +25,7 @@ def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool) -> I
         rrd: rerun recording to write.
         view: show the run in the viewer.
         force: replace files that exist.
+        job: job file of the run: outputs that were made from it are replaced without ``force``.
 
     Raises:
         ArchiveError: a file that already exists, cannot be written, or has a wrong suffix.
@@ -36,11 +37,11 @@ def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool) -> I
         if mcap is not None:
             from twin.sinks.mcap_sink import McapSink
 
-            sinks.append(McapSink(mcap, force=force))
+            sinks.append(McapSink(mcap, force=force, job=job))
         if rrd is not None or view:
             from twin.sinks.rerun.sink import RerunSink
 
-            sinks.append(RerunSink(rrd=rrd, spawn=view, force=force))
+            sinks.append(RerunSink(rrd=rrd, spawn=view, force=force, job=job))
 
         def write(record: Record) -> None:
             for sink in sinks:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from numpy.typing import ArrayLike
 
+from gcode.whole_file import whole_file
 from twin.errors import MeshError
 from twin.workpiece.from_mesh import stl_bytes, threemf_bytes
 from twin.workpiece.to_mesh import SurfaceMesh
@@ -50,13 +51,10 @@ def write_mesh(path: Path | str, mesh: SurfaceMesh, *, force: bool = False) -> N
     target = check_mesh_path(path, force=force)
     if len(mesh.triangles) == 0:
         raise MeshError(f"{path}: no material is left of the workpiece; expected a surface to write")
-    partial = target.with_name(f"{target.name}.partial")
     try:
-        with partial.open("wb") as file:
+        with whole_file(target) as partial, partial.open("wb") as file:
             file.write(_WRITERS[target.suffix.lower()](mesh.vertices_mm, mesh.triangles))
             file.flush()
             os.fsync(file.fileno())
-        partial.replace(target)
     except OSError as error:
-        partial.unlink(missing_ok=True)
         raise MeshError(f"{path}: cannot be written: {error.strerror}") from error

@@ -56,9 +56,7 @@ def test_what_a_killed_run_left_is_not_overwritten(tmp_path, run_records):
     (left := tmp_path / "run.partial.mcap").write_text("past")
     with pytest.raises(ArchiveError) as error:
         McapSink(tmp_path / "run.mcap")
-    assert str(error.value) == (
-        f"{left}: file of a run that did not finish, or is still running; move it away, or replace it with --force"
-    )
+    assert str(error.value) == (f"{left}: file of a run that did not finish; move it away, or replace it with --force")
     assert left.read_text() == "past"
     with McapSink(tmp_path / "run.mcap", force=True) as sink:
         sink.write(run_records[0])

@@ -13,7 +13,7 @@ from support.cut_logs import logged, mean_tables
 from support.edge_integral import BALL_CUTS, BULL_CUTS, SOME, Pass
 from support.job_files import job_folder
 
-from twin.cli.run import run
+from twin.cli import run
 from twin.errors import IdentifyError
 from twin.identification.coefficients_toml import coefficients_toml
 from twin.identification.cuts.load import cuts_from_dict

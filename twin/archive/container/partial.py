@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from twin.archive.container.interrupt import ENDING_SIGNALS, after_this
+from twin.archive.container.lock import lock
 from twin.errors import ArchiveError, TwinError
 
+_EXISTS = "already exists; replace it with --force"
 #: Bytes copied in one piece.
 _COPIED_TOGETHER = 1 << 22
 _NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+_OLD = os.O_WRONLY | getattr(os, "O_NONBLOCK", 0)
 
 
 def partial_path(path: Path) -> Path:
@@ -33,16 +37,14 @@ def replacing(target: Path, refuse: type[TwinError] = ArchiveError) -> Iterator[
         target: missing folders above it are created.
         refuse: the error for a file that cannot be written.
     """
-    partial = partial_path(target)
+    file = PartialFile(target, force=True, refuse=refuse)
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        yield partial
-        partial.replace(target)
+        yield file.partial
+        file.commit()
     except OSError as error:
         raise refuse(f"{target}: cannot be written: {reason(error)}") from error
     finally:
-        with contextlib.suppress(OSError):
-            partial.unlink()
+        file.discard()
 
 
 def copy_file(source: Path, target: Path, *, force: bool = False) -> Path:
@@ -80,27 +82,47 @@ def copy_file(source: Path, target: Path, *, force: bool = False) -> Path:
 class PartialFile:
     """Writes bytes without a buffer; a piece is in the file completely or not at all.
 
+    The partial file is locked while it is written, so that two programs cannot write one output at the same time. The
+    lock ends with the process: what a killed run left is recognised by it.
+
     Args:
         path: the final name.
         force: replace a file of that name, and the partial file of an earlier unfinished run, instead of refusing.
+        replaceable: whether an existing file may be replaced without ``force``.
+        keep: keep the partial file when its end cannot be written: it has a run up to there.
+        refuse: the error for a file that cannot be written.
 
     Raises:
-        ArchiveError: a file exists and ``force`` is not set, or none can be created.
+        ArchiveError: a file exists and must not be replaced, another program is writing it, or none can be created.
     """
 
-    def __init__(self, path: Path, *, force: bool = False) -> None:
+    def __init__(
+        self,
+        path: Path,
+        *,
+        force: bool = False,
+        replaceable: Callable[[Path], bool] = lambda _path: False,
+        keep: bool = False,
+        refuse: type[TwinError] = ArchiveError,
+    ) -> None:
         self.path = path
         self.partial = partial_path(path)
-        self._force = force
+        self._may_replace = (lambda _path: True) if force else replaceable
+        self._keep = keep
+        self._refuse = refuse
         self._size = 0
-        self._refuse_existing()
+        self._file: int | None = None
+        if self._is_taken():
+            raise refuse(f"{path}: {_EXISTS}")
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            if force:
-                self.partial.unlink(missing_ok=True)
-            self._file = self._open()
+            with after_this(*ENDING_SIGNALS):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                self._file = self._open()
         except OSError as error:
-            raise ArchiveError(f"{path}: cannot be written: {reason(error)}") from error
+            raise refuse(f"{path}: cannot be written: {reason(error)}") from error
+        except BaseException:
+            self.discard()
+            raise
 
     def write(self, data: bytes) -> None:
         """Write all of the bytes through to the system.
@@ -110,6 +132,7 @@ class PartialFile:
         """
         if self._file is None:
             raise self.is_closed()
+        self._refuse_removed(self._file)
         view = memoryview(data)
         try:
             while len(view):
@@ -117,26 +140,25 @@ class PartialFile:
         except OSError as error:
             with contextlib.suppress(OSError):
                 os.ftruncate(self._file, self._size)
-            self.abandon()
-            raise ArchiveError(
-                f"{self.path}: cannot be written: {reason(error)}; the part written so far is kept in {self.partial}"
-            ) from error
+            raise self._failed(f"cannot be written: {reason(error)}", "the part written so far") from error
         self._size += len(data)
 
     def commit(self) -> None:
         """Give the file its final name.
 
         Raises:
-            ArchiveError: a file of that name was created meanwhile; the partial one is kept.
+            ArchiveError: a file of that name was created meanwhile, or the partial file was removed.
         """
-        self.abandon()
-        self._refuse_existing(f"; this run is kept in {self.partial}")
+        if self._file is None:
+            raise self.is_closed()
+        self._refuse_removed(self._file)
+        if self._is_taken():
+            raise self._failed(_EXISTS, "this run")
         try:
             self.partial.replace(self.path)
         except OSError as error:
-            raise ArchiveError(
-                f"{self.path}: cannot be written: {reason(error)}; this run is kept in {self.partial}"
-            ) from error
+            raise self._failed(f"cannot be written: {reason(error)}", "this run") from error
+        self.abandon()
 
     def abandon(self) -> None:
         """Close; the file is kept under its partial name."""
@@ -145,28 +167,71 @@ class PartialFile:
             os.close(file)
 
     def discard(self) -> None:
-        """Close and remove."""
+        """Close and remove; nothing after `commit` or `abandon`."""
+        if self._file is not None and _is_open_file(self.partial, self._file):
+            self.partial.unlink(missing_ok=True)
         self.abandon()
-        self.partial.unlink(missing_ok=True)
 
-    def is_closed(self) -> ArchiveError:
+    def is_closed(self) -> TwinError:
         """The error for whoever writes to a closed file."""
-        return ArchiveError(f"{self.path}: is closed")
+        return self._refuse(f"{self.path}: is closed")
 
     @property
     def closed(self) -> bool:
         """Whether nothing more can be written."""
         return self._file is None
 
-    def _open(self) -> int | None:
-        try:
-            return os.open(self.partial, _NEW, 0o666)
-        except FileExistsError:
-            raise ArchiveError(
-                f"{self.partial}: file of a run that did not finish, or is still running; "
-                "move it away, or replace it with --force"
-            ) from None
+    def _open(self) -> int:
+        """Create and lock the partial file; one that is there and not locked is replaced if it may be."""
+        while True:
+            try:
+                file = os.open(self.partial, _NEW, 0o666)
+            except FileExistsError:
+                self._remove_old()
+                continue
+            if lock(file) and _is_open_file(self.partial, file):
+                return file
+            os.close(file)
 
-    def _refuse_existing(self, kept: str = "") -> None:
-        if not self._force and self.path.exists():
-            raise ArchiveError(f"{self.path}: already exists; replace it with --force{kept}")
+    def _remove_old(self) -> None:
+        """Remove the file of an unfinished run; while it is removed it is locked, so that only one program does so."""
+        try:
+            old = os.open(self.partial, _OLD)
+        except FileNotFoundError:
+            return
+        try:
+            if not lock(old):
+                raise self._refuse(f"{self.partial}: another program is writing this file; wait for its end")
+            if not _is_open_file(self.partial, old):
+                return
+            if os.fstat(old).st_size and not self._may_replace(self.partial):
+                raise self._refuse(
+                    f"{self.partial}: file of a run that did not finish; move it away, or replace it with --force"
+                )
+            self.partial.unlink(missing_ok=True)
+        finally:
+            os.close(old)
+
+    def _is_taken(self) -> bool:
+        return self.path.exists() and not self._may_replace(self.path)
+
+    def _failed(self, problem: str, what: str) -> TwinError:
+        """Close, and remove unless the partial file is to be kept; returns the error."""
+        if self._keep:
+            self.abandon()
+        else:
+            self.discard()
+        return self._refuse(f"{self.path}: {problem}{f'; {what} is kept in {self.partial}' if self._keep else ''}")
+
+    def _refuse_removed(self, file: int) -> None:
+        if not _is_open_file(self.partial, file):
+            self.abandon()
+            raise self._refuse(f"{self.path}: cannot be written: {self.partial} was removed by another program")
+
+
+def _is_open_file(path: Path, file: int) -> bool:
+    """Whether a path is still that of an open file."""
+    try:
+        return os.path.samestat(path.stat(), os.fstat(file))
+    except OSError:
+        return False

@@ -36,7 +36,9 @@ def replay(
             metavar="FILE", help="Archive (MCAP) to write; the job's output.mcap if not given.", show_default=False
         ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace output files that exist.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace output files that were not made from this job file.")
+    ] = False,
     strict: Annotated[bool, typer.Option("--strict", help="Stop at the first collision, with exit code 3.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as one JSON object.")] = False,
     quiet: Annotated[
@@ -55,8 +57,9 @@ def replay(
 ) -> None:
     """Replay the NC program of a job: remove material, compute cutting forces, archive the run.
 
-    Missing folders of outputs are created. Ctrl-C stops the replay; its outputs are complete up to there. A second
-    Ctrl-C discards them. A replay that ends with an error leaves no outputs.
+    Missing folders of outputs are created; outputs that were made from the same job file are replaced. Ctrl-C stops the
+    replay; its outputs are complete up to there. A second Ctrl-C discards them. A replay that ends with an error leaves
+    no outputs.
     """
     from twin.cli.commands.replay_work import replay_job
     from twin.cli.show.progress import progress
@@ -67,7 +70,7 @@ def replay(
     job = job.without_forces() if no_forces else job
     job = job.with_simulation(store=engine.value) if engine is not None else job
     mcap, rrd = mcap or job.output.mcap, rrd or job.output.rrd
-    with opened(mcap, rrd, view=view, force=force) as write, progress(quiet=quiet or as_json) as line:
+    with opened(mcap, rrd, view=view, force=force, job=job.path) as write, progress(quiet=quiet or as_json) as line:
         outcome = replay_job(job, line, write, strict=strict, threads=threads)
     if as_json:
         _print_json(outcome, {"job": job_file, "mcap": mcap, "rrd": rrd}, job.output.force_on)

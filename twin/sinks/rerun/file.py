@@ -15,6 +15,7 @@ from typing import Protocol
 import rerun as rr
 
 from twin.archive.container.partial import PartialFile
+from twin.archive.same_job import is_recording_of
 from twin.errors import ArchiveError
 
 _PIECE = 1 << 20
@@ -41,13 +42,14 @@ class RecordingFile:
     Args:
         path: the final name; missing folders above it are created.
         force: replace an existing file instead of refusing.
+        job: job file of the run: a recording that was made from it is replaced without ``force``.
 
     Raises:
-        ArchiveError: the file already exists, or cannot be created.
+        ArchiveError: the file already exists, another program is writing it, or it cannot be created.
     """
 
-    def __init__(self, path: Path, *, force: bool = False) -> None:
-        self._file = PartialFile(path, force=force)
+    def __init__(self, path: Path, *, force: bool = False, job: Path | None = None) -> None:
+        self._file = PartialFile(path, force=force, replaceable=lambda old: is_recording_of(old, job), keep=True)
         self._error: ArchiveError | None = None
         self._transfer: _Transfer = _Pipe(self._put) if _OPEN_FILES.exists() else _Memory(self._put)
         self._connected = False

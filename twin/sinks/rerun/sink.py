@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
+from uuid import uuid4
 
 import numpy as np
 import rerun as rr
@@ -29,6 +30,7 @@ class RerunSink:
         rrd: the recording's file; missing folders above it are created. It is named ``*.partial.rrd`` until `close`.
         spawn: start a viewer and show the run while it is computed.
         force: replace an existing file instead of refusing.
+        job: job file of the run: a recording that was made from it is replaced without ``force``.
 
     Raises:
         ArchiveError: the file already exists, or cannot be created.
@@ -36,10 +38,12 @@ class RerunSink:
         ValueError: neither a file nor a viewer is requested.
     """
 
-    def __init__(self, *, rrd: Path | None = None, spawn: bool = False, force: bool = False) -> None:
+    def __init__(
+        self, *, rrd: Path | None = None, spawn: bool = False, force: bool = False, job: Path | None = None
+    ) -> None:
         if rrd is None and not spawn:
             raise ValueError("rrd or spawn must be given")
-        self._file = RecordingFile(Path(rrd), force=force) if rrd is not None else None
+        self._file = RecordingFile(Path(rrd), force=force, job=job) if rrd is not None else None
         self._spawn = spawn
         self._recording: rr.RecordingStream | None = None
         self._closed = False
@@ -110,7 +114,7 @@ class RerunSink:
     def _start(self, header: RunHeader) -> None:
         if self._recording is not None:
             raise ArchiveError("a run has one RunHeader, got a second one")
-        recording = rr.RecordingStream(layout.APPLICATION_ID)
+        recording = rr.RecordingStream(layout.APPLICATION_ID, recording_id=f"{header.job or 'run'}-{uuid4().hex}")
         viewers = [self._viewer(recording)] if self._spawn else []
         if self._file is not None:
             self._file.connect(recording, *viewers)

@@ -5,16 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from gcode.cli.console import closed_pipe
-from gcode.cli.entry import carry_out, console_script
+from gcode.cli.entry import carry_out
+from gcode.cli.streams import failed_output
 from gcode.errors import GcodeError
 from twin.cli import exit_codes
 from twin.errors import SettingsError, TwinError
 
-
-def main() -> None:
-    """The console script."""
-    console_script(run)
+#: Commands whose memory is that of the slices.
+_REPLAYING = ("replay", "verify", "mesh")
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -32,12 +30,13 @@ def run(arguments: Sequence[str]) -> int:
     try:
         code = carry_out(app, arguments, "twin")
         sys.stdout.flush()
-    except BrokenPipeError:
-        return closed_pipe()
+    except OSError as error:
+        return failed_output(error)
     except (TwinError, GcodeError) as error:
         fail(message_of(error))
     except MemoryError:
-        fail("not enough memory; a larger simulation.slice_pitch_mm needs less")
+        replayed = next(iter(arguments), "") in _REPLAYING
+        fail(f"not enough memory{'; a larger simulation.slice_pitch_mm needs less' if replayed else ''}")
     else:
         return code
     return exit_codes.ERROR
