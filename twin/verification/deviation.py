@@ -74,8 +74,8 @@ class Deviation:
             shape (m, 3) and (m,).
         tolerance_mm: permitted gouge.
         excess_mm: permitted excess.
-        gouged_mm3: volume of gouges, as depth times area; a missing rib is not in it, but in ``lost_mm``.
-        left_mm3: volume of material left on the design.
+        gouged_mm3: volume of the design that was removed from the stock.
+        left_mm3: volume of material left on the design: stock less removed less design, inside the limits.
         lost_mm: largest distance from a missing point of the design to the machined surface, 0 for none.
         resolution_mm: accuracy of the deviations.
         pitch_mm: largest distance between rays; smaller details may lie undetected between them.
@@ -160,8 +160,11 @@ def deviation(
         raise ValueError(f"tolerance_mm and excess_mm must be above 0, got {tolerance_mm} and {excess}")
     limits = limits or Limits.of(design)
     tree = ClosestPoints(design.vertices_mm, design.triangles, design.edges)
-    found = [_one_direction(rays, tree, store, limits, threads) for rays in cast(store, design)]
+    found = [
+        _one_direction(rays, tree, store, limits, min(tolerance_mm, excess), threads) for rays in cast(store, design)
+    ]
     points, away, area, touched, wanted, over = (np.concatenate([f[i] for f in found]) for i in range(6))
+    left, gone = np.mean([f.volumes_mm3 for f in found], axis=0)
     pitch = float(store.pitch_mm.max())
     lost = _lost(points, wanted, over, tolerance_mm + _LOST_PITCHES * pitch)
     points, away, area = points[touched], away[touched], area[touched]
@@ -173,8 +176,8 @@ def deviation(
         design_deviation_mm=over,
         tolerance_mm=tolerance_mm,
         excess_mm=excess,
-        gouged_mm3=float((np.maximum(-away, 0.0) * area).sum()),
-        left_mm3=sum(f.left_mm3 for f in found),
+        gouged_mm3=float(gone),
+        left_mm3=float(left),
         lost_mm=lost,
         resolution_mm=Tolerance.for_pitch(pitch).chord_mm + _ROUNDING_MM,
         pitch_mm=pitch,
@@ -183,7 +186,7 @@ def deviation(
 
 
 class _Direction(NamedTuple):
-    """Measurements of rays along one axis: points of the machined surface and of the design, and the excess volume."""
+    """Measurements of rays along one axis: points of the machined surface and of the design, volumes between them."""
 
     points: FloatArray
     away: FloatArray
@@ -191,42 +194,39 @@ class _Direction(NamedTuple):
     touched: NDArray[np.bool_]
     wanted: FloatArray
     over: FloatArray
-    left_mm3: float
+    volumes_mm3: tuple[float, float]
 
 
 def _one_direction(
-    rays: Rays, tree: ClosestPoints, store: TriSlices, limits: Limits, threads: int | None
+    rays: Rays, tree: ClosestPoints, store: TriSlices, limits: Limits, near_mm: float, threads: int | None
 ) -> _Direction:
     points, _, _ = rays.points(rays.machined)
-    points = points[limits.hold(points)]
+    held = limits.hold(points)
+    points = points[held]
     near = tree.ask(points, threads)
     apart = points - near.places_mm
-    far = np.abs(near.distance_mm) > _ROUNDING_MM
+    distance = np.abs(near.distance_mm)
+    far = distance > _ROUNDING_MM
     normals = np.where(far[:, None], apart / np.where(far, near.distance_mm, 1.0)[:, None], near.normals)
-    area = np.abs(normals[:, rays.axis]) * rays.area_mm2
-    touched = ~(_flush(points, store) & (np.abs(near.distance_mm) <= 2.0 * _ROUNDING_MM))
-    wanted, over, left = _design_side(rays, tree, limits, threads)
-    return _Direction(points, near.distance_mm, area, touched, wanted, over, left)
+    facing = np.abs(normals[:, rays.axis])
+    # within tolerance the design's normal is that of the machined surface as well; elsewhere the slices have it
+    if (away := distance > near_mm).any():
+        facing[away] = rays.facing(store)[held][away]
+    touched = ~(_flush(points, store) & (distance <= 2.0 * _ROUNDING_MM))
+    wanted, over = _design_side(rays, tree, limits, threads)
+    volumes = rays.volumes_mm3(store, limits.low_mm, limits.high_mm)
+    return _Direction(points, near.distance_mm, facing * rays.area_mm2, touched, wanted, over, volumes)
 
 
-def _design_side(
-    rays: Rays, tree: ClosestPoints, limits: Limits, threads: int | None
-) -> tuple[FloatArray, FloatArray, float]:
-    """Points of the design that rays meet steeply enough, the excess at each of them, and its volume.
-
-    The volume is the sum over the three directions of lengths on rays, each weighted by the square of the design's
-    normal along its ray: these squares add up to one, so every part of the surface counts once.
-    """
-    wanted, _, out = rays.points(rays.design)
+def _design_side(rays: Rays, tree: ClosestPoints, limits: Limits, threads: int | None) -> tuple[FloatArray, FloatArray]:
+    """Points of the design that rays meet steeply enough, and the excess at each of them."""
+    wanted, _, _ = rays.points(rays.design)
     over = beyond(rays) if len(wanted) else np.empty(0)
     inside = limits.hold(wanted)
-    wanted, over, out = wanted[inside], over[inside], out[inside]
+    wanted, over = wanted[inside], over[inside]
     facing = np.abs(tree.ask(wanted, threads).normals[:, rays.axis])
-    end = np.where(out > 0.0, limits.high_mm[rays.axis], limits.low_mm[rays.axis])
-    standing = np.clip(over, 0.0, np.abs(end - wanted[:, rays.axis]))
-    left = float((standing * facing**2).sum()) * rays.area_mm2
     seen = facing >= _FACING
-    return wanted[seen], (over * facing)[seen], left
+    return wanted[seen], (over * facing)[seen]
 
 
 def _flush(points: FloatArray, store: TriSlices) -> NDArray[np.bool_]:

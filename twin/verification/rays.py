@@ -43,6 +43,49 @@ class Rays:
     design: LineEnds
     area_mm2: float
 
+    def facing(self, store: TriSlices) -> FloatArray:
+        """Component of the machined surface's normal along the ray at each of its ends, 0 to 1, shape (n,).
+
+        The slopes of the boundary in both families of planes that hold the ray give the normal; where the two disagree
+        on the number of ends, the second slope counts as 0.
+        """
+        family, other = self.across
+        at = [plane_positions(store.low_mm, store.pitch_mm, a, store.count(a)) for a in (family, other)]
+        window = (float(store.low_mm[self.axis]) - 1.0, float(store.high_mm[self.axis]) + 1.0)
+        fixed = PLANE_AXES[other].index(family)
+        second = store.line_ends(other, np.arange(len(at[1])), fixed, at[0], window)
+        # that of ray (i, j) is line j n + i there
+        turned = np.arange(len(self.positions_mm)).reshape(len(at[1]), len(at[0])).T.ravel()
+        counts, here = np.diff(second.offsets)[turned], np.diff(self.machined.offsets)
+        same = np.repeat(counts == here, here)
+        ends = np.arange(len(self.machined.ends_mm)) - np.repeat(self.machined.offsets[:-1], here)
+        index = np.where(same, np.repeat(second.offsets[:-1][turned], here) + ends, 0)
+        across = np.where(same, second.slopes[index], 0.0) if len(second.slopes) else 0.0
+        return np.asarray(1.0 / np.sqrt(1.0 + self.machined.slopes**2 + across**2))
+
+    def volumes_mm3(self, store: TriSlices, low_mm: FloatArray, high_mm: FloatArray) -> tuple[float, float]:
+        """Volume of the machined part outside the design, and of the design outside the machined part.
+
+        Args:
+            low_mm, high_mm: corners of the box that both are limited to, shape (3,), with the stock's box.
+        """
+        low, high = np.maximum(low_mm, store.low_mm), np.minimum(high_mm, store.high_mm)
+        half = 0.5 * store.pitch_mm[list(self.across)]
+        inner, outer = low[list(self.across)], high[list(self.across)]
+        # the part of each ray's cell inside the box
+        cell = np.minimum(self.positions_mm + half, outer) - np.maximum(self.positions_mm - half, inner)
+        weight = np.prod(np.clip(cell, 0.0, None), axis=1)
+        both = (self.machined, self.design)
+        rays = np.concatenate([np.repeat(np.arange(len(weight)), np.diff(ends.offsets)) for ends in both])
+        at = np.clip(np.concatenate([ends.ends_mm for ends in both]), low[self.axis], high[self.axis])
+        own = np.arange(len(rays)) < len(self.machined.ends_mm)
+        order = np.lexsort((at, rays))
+        rays, at, own = rays[order], at[order], own[order]
+        inside, wanted = np.cumsum(own) % 2 == 1, np.cumsum(~own) % 2 == 1
+        length = np.where(rays[1:] == rays[:-1], np.diff(at), 0.0) * weight[rays[:-1]]
+        left, gone = (float(length[(a & ~b)[:-1]].sum()) for a, b in ((inside, wanted), (wanted, inside)))
+        return left, gone
+
     def points(self, ends: LineEnds) -> tuple[FloatArray, NDArray[np.int64], FloatArray]:
         """Ends as points, shape (n, 3), the ray of each, and the direction out of the material there, -1 or +1."""
         rays = np.repeat(np.arange(len(self.positions_mm)), np.diff(ends.offsets))

@@ -14,6 +14,8 @@ from twin.arrays import FloatArray
 Kind: TypeAlias = Literal["gouge", "excess"]
 #: Points belong to one region when they lie in neighbouring cells of this many pitches.
 _CELL_PITCHES = 3.0
+#: A region with less area than this, in squares of the pitch, is seen by rays along the surface only: it has no extent.
+_LEAST_AREA = 1e-6
 #: Largest number of cells of the grid that regions are found on.
 _MOST_CELLS = 30_000_000
 
@@ -68,6 +70,7 @@ def regions_out_of_tolerance(
             _region(kind, points_mm[out][groups == g], depth[out][groups == g], area_mm2[out][groups == g])
             for g in range(int(groups.max(initial=-1)) + 1)
         ]
+        here = [region for region in here if region.area_mm2 > _LEAST_AREA * pitch_mm**2]
         found += sorted(here, key=lambda region: -region.worst_mm)
     return tuple(found)
 

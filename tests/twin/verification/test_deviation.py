@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+import shapely
+import trimesh
 from support.small_parts import box, prism, prism_corners
 
 from twin.verification.deviation import Deviation, Limits, deviation
@@ -109,3 +111,36 @@ def test_rays_measure_missing_and_excess_material() -> None:
 def test_tolerances_that_cannot_be(values: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must be above 0"):
         compare(step(3.0), step(3.0), **values)
+
+
+def extruded(*rings: np.ndarray, high: float = 5.0) -> Solid:
+    """Rings in the plan, the outer first, as a solid of a height."""
+    polygon = shapely.Polygon(rings[0], rings[1:])
+    return solid(np.array(trimesh.creation.extrude_polygon(polygon, high).triangles), "extruded")
+
+
+def circle(radius: float) -> np.ndarray:
+    angle = np.linspace(0.0, math.tau, 48, endpoint=False)
+    return radius * np.column_stack((np.cos(angle), np.sin(angle)))
+
+
+@pytest.mark.parametrize(("pitch", "rel"), [(0.4, 0.015), (0.25, 0.01)])
+def test_volumes_left_and_gouged_are_those_between_the_bodies(pitch: float, rel: float) -> None:
+    """A ring left in its box: stock less removed less part, whatever the distances; and the reverse."""
+    ring, stock = extruded(circle(8.0), circle(5.0)), box((-8, -8, 0), (8, 8, 5))
+    between = stock.volume_mm3 - ring.volume_mm3
+    found = compare(stock, ring, pitch=pitch)
+    assert found.left_mm3 == pytest.approx(between, rel=rel) and found.gouged_mm3 == pytest.approx(0.0, abs=1e-6)
+    turned = compare(ring, stock, pitch=pitch)
+    assert turned.gouged_mm3 == pytest.approx(between, rel=rel) and turned.left_mm3 == pytest.approx(0.0, abs=1e-6)
+
+
+def test_regions_have_the_area_of_the_machined_surface() -> None:
+    """Faces over a bore that was not cut, whose nearest design is beside them: no region without an area."""
+    found = compare(box((-8, -8, 0), (8, 8, 5)), extruded(circle(8.0), circle(5.0)), pitch=0.25)
+    bore = [r for r in found.regions if np.all(r.high_mm[:2] < 5.1) and np.all(r.low_mm[:2] > -5.1)]
+    assert len(bore) == 2
+    assert [r.area_mm2 for r in bore] == pytest.approx([math.pi * 25.0] * 2, rel=0.02)
+    narrow = extruded(*(np.array([(-4, -4), (4, -4), (4, 4), (-4, 4)]) * s for s in (1.0, 0.02)))
+    regions = compare(box((-4, -4, 0), (4, 4, 5)), narrow, pitch=0.1).regions
+    assert len(regions) == 2 and [r.area_mm2 for r in regions] == pytest.approx([0.0256] * 2, rel=0.6)
