@@ -13,11 +13,10 @@ from rerun.chunk import RrdReader
 
 from tests.support.recording import Recording
 from tests.support.slot_run import SlotRun, patch
-from twin.errors import ArchiveError, TwinError
+from twin.errors import ArchiveError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, WorkpiecePatch
 from twin.sinks.rerun import file as rerun_file
 from twin.sinks.rerun import layout
-from twin.sinks.rerun import sink as rerun_sink
 from twin.sinks.rerun.sink import RerunSink
 
 RUN = SlotRun(step_mm=1.0, per_turn=36)
@@ -276,16 +275,6 @@ def test_where_pipes_have_no_names_the_file_is_the_same(
     write(tmp_path / "a.rrd", records)
     samples = sum(len(s.samples.t_s) for s in steps_of(records))
     assert len(Recording(tmp_path / "a.rrd").column("force/x", "Scalars:scalars")) == samples
-
-
-def test_a_viewer_that_cannot_be_started_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing(**_: object) -> None:
-        raise RuntimeError("Failed to find Rerun Viewer executable in PATH.\n\nmore")
-
-    monkeypatch.setattr(rerun_sink.rr, "spawn", missing)
-    with pytest.raises(TwinError) as caught, RerunSink(spawn=True) as sink:
-        sink.write(RUN.header())
-    assert str(caught.value) == "the rerun viewer cannot be started: Failed to find Rerun Viewer executable in PATH."
 
 
 def test_the_header_names_the_recording(tmp_path: Path) -> None:

@@ -40,6 +40,10 @@ def run_one(run: Path, measured: Path | None, options: Mapping[str, Any], output
     """
     from twin.cli.console import print_json, results, warn
 
+    if outputs.view:
+        from twin.sinks.rerun.viewer import require_viewer
+
+        require_viewer()
     table, job_log = job_measured(run)
     settings = settings_from(CompareSettings, options, table, f"{run}, [measured] of its job", "twin compare")
     log = measured or job_log

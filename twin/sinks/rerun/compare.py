@@ -9,12 +9,11 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from twin.archive.comparison_file import ComparedForces
-from twin.errors import TwinError
 from twin.sinks.rerun import layout
 from twin.sinks.rerun.file import RecordingFile
+from twin.sinks.rerun.viewer import viewer_sink
 
 _APPLICATION_ID = "twin-comparison"
-_PORT = 9876
 _MEASURED: layout.Rgb = (206, 212, 220)
 #: Half of the time that the close views show around the cursor, s.
 _CLOSE_S = 0.02
@@ -34,7 +33,7 @@ def show_comparison(forces: ComparedForces, *, rrd: Path | None = None, spawn: b
         TwinError: the viewer cannot be started.
     """
     recording = rr.RecordingStream(_APPLICATION_ID)
-    viewers = [_viewer(recording)] if spawn else []
+    viewers = [viewer_sink()] if spawn else []
     file = RecordingFile(rrd, force=True) if rrd is not None else None
     if file is not None:
         file.connect(recording, *viewers)
@@ -105,13 +104,3 @@ def _curves(name: str, contents: list[str], *, close: bool = False) -> rrb.TimeS
         time_ranges=[around] if close else None,
         axis_x=None if close else rrb.TimeAxis(view_range=whole),
     )
-
-
-def _viewer(recording: rr.RecordingStream) -> rr.GrpcSink:
-    """Start a viewer, or use a running one."""
-    try:
-        rr.spawn(port=_PORT, connect=False, hide_welcome_screen=True, recording=recording)
-    except RuntimeError as error:
-        first = str(error).strip().splitlines()[0]
-        raise TwinError(f"the rerun viewer cannot be started: {first}") from error
-    return rr.GrpcSink(f"rerun+http://127.0.0.1:{_PORT}/proxy")

@@ -10,7 +10,7 @@ from uuid import uuid4
 import numpy as np
 import rerun as rr
 
-from twin.errors import ArchiveError, TwinError
+from twin.errors import ArchiveError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, ToolRecord, WorkpiecePatch
 from twin.sinks.rerun import layout
 from twin.sinks.rerun.batches import Moments, PathBatch, StepBatch, force_columns, path_columns, pose_columns
@@ -19,8 +19,7 @@ from twin.sinks.rerun.file import RecordingFile
 from twin.sinks.rerun.scene import draw_scale, draw_scene
 from twin.sinks.rerun.shapes import scale_end_n, tool_mesh
 from twin.sinks.rerun.summary import summary_text
-
-_PORT = 9876
+from twin.sinks.rerun.viewer import require_viewer, viewer_sink
 
 
 class RerunSink:
@@ -34,7 +33,7 @@ class RerunSink:
 
     Raises:
         ArchiveError: the file already exists, or cannot be created.
-        TwinError: the viewer cannot be started.
+        TwinError: there is no screen for the viewer.
         ValueError: neither a file nor a viewer is requested.
     """
 
@@ -43,6 +42,8 @@ class RerunSink:
     ) -> None:
         if rrd is None and not spawn:
             raise ValueError("rrd or spawn must be given")
+        if spawn:
+            require_viewer()
         self._file = RecordingFile(Path(rrd), force=force, job=job) if rrd is not None else None
         self._spawn = spawn
         self._recording: rr.RecordingStream | None = None
@@ -115,7 +116,7 @@ class RerunSink:
         if self._recording is not None:
             raise ArchiveError("a run has one RunHeader, got a second one")
         recording = rr.RecordingStream(layout.APPLICATION_ID, recording_id=f"{header.job or 'run'}-{uuid4().hex}")
-        viewers = [self._viewer(recording)] if self._spawn else []
+        viewers = [viewer_sink()] if self._spawn else []
         if self._file is not None:
             self._file.connect(recording, *viewers)
         else:
@@ -129,15 +130,6 @@ class RerunSink:
         self._tools = {tool.number: tool for tool in header.tools}
         self._path = PathBatch(header.planned_time_s)
         draw_scene(recording, header)
-
-    def _viewer(self, recording: rr.RecordingStream) -> rr.GrpcSink:
-        """Start a viewer, or use a running one."""
-        try:
-            rr.spawn(port=_PORT, connect=False, hide_welcome_screen=True, recording=recording)
-        except RuntimeError as error:
-            first = str(error).strip().splitlines()[0]
-            raise TwinError(f"the rerun viewer cannot be started: {first}") from error
-        return rr.GrpcSink(f"rerun+http://127.0.0.1:{_PORT}/proxy")
 
     def _step(self, step: Step) -> None:
         if step.tool != self._tool:
