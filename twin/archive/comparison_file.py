@@ -97,7 +97,7 @@ def read_comparison(path: str | PathLike[str]) -> tuple[ComparedForces, dict[str
 
     from twin.archive.foreign import read_numbers
 
-    _, columns = read_numbers(path, schemas.COMPARISON_TOPIC)
+    columns = read_numbers(path, schemas.COMPARISON_TOPIC).columns
     with Path(path).open("rb") as file:
         found = next((a for a in make_reader(file).iter_attachments() if a.name == RESULT), None)
     if found is None:

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 from array import array
-from collections.abc import Iterable, Iterator, Mapping
 from math import nan
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mcap.records import Channel, Schema
+from mcap.records import Channel
 
-from twin.archive import schemas
 from twin.archive.foreign_log import ForeignLog, LogMessage
+from twin.archive.foreign_message import MessageFields
 from twin.archive.frames import McapFile, RunFile
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 
 _ENCODINGS = ("protobuf", "json")
+#: Fields that are times by their names.
+_TIME_FIELDS = frozenset(("t_s", "time", "t", "time_s", "t_ms", "time_ms", "t_us", "time_us", "timestamp", "stamp"))
 
 
 def is_run(path: str | PathLike[str]) -> bool:
@@ -32,15 +32,27 @@ def is_run(path: str | PathLike[str]) -> bool:
         return False
 
 
-def read_numbers(path: str | PathLike[str], topic: str | None = None) -> tuple[str, dict[str, FloatArray]]:
-    """The numbers of the messages on a topic, nested fields joined by dots.
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class TopicNumbers:
+    """The numbers of one topic's messages.
+
+    Attributes:
+        columns: shape (n,) by field; ``t_s``, counted from the first message, is the first one if no field is a time.
+        notes: which clock ``t_s`` is, if not that of the recorder.
+        not_read: fields with too many numbers a message.
+    """
+
+    topic: str
+    columns: dict[str, FloatArray]
+    notes: tuple[str, ...]
+    not_read: tuple[str, ...]
+
+
+def read_numbers(path: str | PathLike[str], topic: str | None = None) -> TopicNumbers:
+    """The numbers of the messages on a topic, nested fields joined by dots, elements of lists numbered from 1.
 
     Args:
         topic: None for the only topic with readable messages.
-
-    Returns:
-        the topic, and shape (n,) arrays by field; ``t_s`` is added from the log time, counted from the first message,
-        if no field is a time.
 
     Raises:
         ArchiveError: not an MCAP file; a topic that is unknown, cannot be read, or must be chosen.
@@ -50,93 +62,88 @@ def read_numbers(path: str | PathLike[str], topic: str | None = None) -> tuple[s
             log = ForeignLog(file)
             found = _choose(file.path, log.channels, topic)
             rows = _Rows()
-            for time_ns, row in _numbers(log.messages(found)):
-                rows.add(time_ns, row)
+            for message in log.messages(found):
+                rows.add(message, MessageFields.of(message, rows.classes))
     except ArchiveError:
         raise
     except Exception as error:  # the libraries raise many kinds on damaged files
         raise ArchiveError(f"{path}: not a readable MCAP file: {error}") from error
     if len(rows.times_ns) < 2:
         raise ArchiveError(f"{path}: {len(rows.times_ns)} messages on {found}, expected at least 2")
-    return found, rows.columns()
+    columns, notes = rows.columns()
+    not_read = tuple(f"{name} (list of {count} numbers)" for name, count in rows.lists.items())
+    return TopicNumbers(topic=found, columns=columns, notes=notes, not_read=not_read)
+
+
+def _times() -> array[int]:
+    return array("q")
 
 
 @dataclasses.dataclass(slots=True)
 class _Rows:
-    """Numbers by name, with 8 bytes a number."""
+    """Numbers by name, with 8 bytes a number, and the times of the messages by three clocks."""
 
-    times_ns: array[int] = dataclasses.field(default_factory=lambda: array("q"))
+    times_ns: array[int] = dataclasses.field(default_factory=_times)
+    sent_ns: array[int] = dataclasses.field(default_factory=_times)
+    stamps_ns: array[int] = dataclasses.field(default_factory=_times)
     values: dict[str, array[float]] = dataclasses.field(default_factory=dict)
+    lists: dict[str, int] = dataclasses.field(default_factory=dict)
+    classes: dict[int, Any] = dataclasses.field(default_factory=dict)
 
-    def add(self, time_ns: int, row: Mapping[str, float]) -> None:
-        for name, value in row.items():
+    def add(self, message: LogMessage, fields: MessageFields) -> None:
+        for name, value in fields.numbers.items():
             column = self.values.setdefault(name, array("d"))
             column.extend([nan] * (len(self.times_ns) - len(column)))
             column.append(value)
-        self.times_ns.append(time_ns)
+        self.lists |= fields.lists
+        if fields.stamp_ns is not None:
+            self.stamps_ns.append(fields.stamp_ns)
+        self.times_ns.append(message.time_ns)
+        self.sent_ns.append(message.sent_ns)
 
-    def columns(self) -> dict[str, FloatArray]:
-        """The columns in the order of log time; a number that a message does not have is NaN."""
-        times = np.array(self.times_ns)
+    def columns(self) -> tuple[dict[str, FloatArray], tuple[str, ...]]:
+        """The columns in the order of time; a number that a message does not have is NaN. And notes."""
+        times, notes = self._clock()
         order = np.argsort(times, kind="stable")
+        if np.any(order[1:] < order[:-1]):
+            notes = (*notes, "messages out of order were sorted by their time")
         columns: dict[str, FloatArray] = {}
-        if not any(name.split(".")[-1] in ("t_s", "time", "t", "time_s") for name in self.values):
+        if not any(name.rpartition(".")[2].lower() in _TIME_FIELDS for name in self.values):
             columns["t_s"] = (times[order] - times[order[0]]) * 1e-9
+        else:
+            notes = ()
         for name, column in self.values.items():
             column.extend([nan] * (len(times) - len(column)))
             columns[name] = np.array(column)[order]
-        return columns
+        return columns, notes
+
+    def _clock(self) -> tuple[np.ndarray[tuple[int], np.dtype[np.int64]], tuple[str, ...]]:
+        """Times of the messages: their own stamps, or when they were recorded; when they were sent, if in bursts."""
+        count = len(self.times_ns)
+        if len(self.stamps_ns) == count and self.stamps_ns.count(0) <= 1 and min(self.stamps_ns) < max(self.stamps_ns):
+            return np.array(self.stamps_ns), ("time from the stamps in the messages",)
+        recorded, sent = np.array(self.times_ns), np.array(self.sent_ns)
+        if np.any(np.diff(np.sort(recorded)) == 0) and np.all(np.diff(np.sort(sent)) > 0):
+            return sent, ("time at which the messages were sent: they were recorded in bursts",)
+        return recorded, ()
 
 
 def _choose(path: Path, channels: list[Channel], topic: str | None) -> str:
     """The topic to read."""
     known = [c.topic for c in channels if c.message_encoding in _ENCODINGS]
+    others = ", ".join(f"{c.topic} ({c.message_encoding})" for c in channels if c.topic not in known)
+    if not known:
+        raise ArchiveError(
+            f"{path}: no topic in protobuf or JSON, topics are {others or 'none'}; expected messages in one of these: "
+            "convert the file, or export the topic as CSV"
+        )
     if topic is not None:
         if topic not in known:
             raise ArchiveError(f"{path}: no topic {topic!r} in protobuf or JSON; expected one of {', '.join(known)}")
         return topic
-    likely = [t for t in known if "force" in t.lower()] or known
+    likely = [t for t in known if any(word in t.lower() for word in ("force", "wrench"))] or known
     if len(likely) != 1:
-        names = ", ".join(f"{c.topic} ({c.message_encoding})" for c in channels) or "none"
-        raise ArchiveError(f"{path}: which topic has the forces? topics are {names}; choose one by --group TOPIC")
+        names = ", ".join(f"{c.topic} ({c.message_encoding})" for c in channels if c.topic in known)
+        rest = f" (not readable: {others})" if others else ""
+        raise ArchiveError(f"{path}: which topic has the forces? topics are {names}{rest}; choose one by --group TOPIC")
     return likely[0]
-
-
-def _numbers(messages: Iterable[LogMessage]) -> Iterator[tuple[int, dict[str, float]]]:
-    """Log time in ns and numbers of each message."""
-    classes: dict[int, Any] = {}
-    for message in messages:
-        channel = message.channel
-        if channel.message_encoding == "json":
-            yield message.time_ns, dict(_json_numbers(json.loads(message.data), ""))
-        else:
-            made = classes.get(channel.id) or _class(message.schema)
-            classes[channel.id] = made
-            yield message.time_ns, dict(_fields(made.FromString(message.data), ""))
-
-
-def _class(schema: Schema | None) -> Any:
-    if schema is None:
-        raise ValueError("a protobuf topic without a schema")
-    return schemas.embedded_class(schema.data, schema.name)
-
-
-def _fields(message: Any, prefix: str) -> Iterator[tuple[str, float]]:
-    """Numbers of a protobuf message; fields that are not set are zero, as the format defines."""
-    for field in message.DESCRIPTOR.fields:
-        if field.is_repeated or field.cpp_type in (field.CPPTYPE_STRING, field.CPPTYPE_ENUM):
-            continue
-        value = getattr(message, field.name)
-        if field.cpp_type == field.CPPTYPE_MESSAGE:
-            if field.message_type.full_name != "google.protobuf.Timestamp":
-                yield from _fields(value, f"{prefix}{field.name}.")
-        else:
-            yield f"{prefix}{field.name}", float(value)
-
-
-def _json_numbers(value: Any, prefix: str) -> Iterator[tuple[str, float]]:
-    if isinstance(value, Mapping):
-        for key, inner in value.items():
-            yield from _json_numbers(inner, f"{prefix}.{key}" if prefix else str(key))
-    elif isinstance(value, int | float) and not isinstance(value, bool):
-        yield prefix, float(value)

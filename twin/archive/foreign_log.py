@@ -15,17 +15,18 @@ from twin.archive.frames import DAMAGE, HEAD, Frame, McapFile, stream
 from twin.archive.integrity import FileIndex, checked_index, compare_counts
 from twin.errors import ArchiveError
 
-#: Channel, sequence and log time of a message.
-_MESSAGE = struct.Struct("<HIQ")
+#: Channel, sequence, log time and publish time of a message.
+_MESSAGE = struct.Struct("<HIQQ")
 
 
 @dataclass(frozen=True, slots=True)
 class LogMessage:
-    """One message, still encoded."""
+    """One message, still encoded; the times at which it was recorded, and sent."""
 
     channel: Channel
     schema: Schema | None
     time_ns: int
+    sent_ns: int
     data: bytes
 
 
@@ -93,11 +94,11 @@ class ForeignLog:
     def _message(self, body: bytes, offset: int) -> LogMessage:
         if len(body) < MESSAGE_FIXED:
             raise self._file.damaged(offset, "a message without its fields")
-        number, _, time_ns = _MESSAGE.unpack_from(body)
+        number, _, time_ns, sent_ns = _MESSAGE.unpack_from(body)
         channel = self._channels.get(number)
         if channel is None:
             raise self._file.damaged(offset, f"a message on the unknown channel {number}")
-        return LogMessage(channel, self._schemas.get(channel.schema_id), time_ns, body[MESSAGE_FIXED:])
+        return LogMessage(channel, self._schemas.get(channel.schema_id), time_ns, sent_ns, body[MESSAGE_FIXED:])
 
     def _take_all(self, frames: Iterator[Frame] | list[Frame]) -> None:
         """Keep schemas and channels."""

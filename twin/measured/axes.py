@@ -25,6 +25,9 @@ _FORCE_NAMES = tuple(
         r"^{axis}$",
     )
 )
+_VECTOR = re.compile(
+    r"(?P<base>(?:.*[/.])?(?:f|forces?|kraft|kr(?:ä|ae)fte|loads?))[\[{(](?P<index>\d+)[\]})]$", re.IGNORECASE
+)
 _NOT_MEASURED = re.compile(r"(?:^|[\s_.(-])(?:sim|simul|model|pred|calc|comp|theor|fit|est)", re.IGNORECASE)
 
 
@@ -111,7 +114,19 @@ def guess_map(columns: Iterable[str]) -> AxisMap | None:
             found = {axis: [n for n in among if any(_matches(p, axis, n) for p in patterns)] for axis in AXES}
             if all(len(found[axis]) == 1 for axis in AXES):
                 return AxisMap(tuple((axis, found[axis][0]) for axis in AXES))
-    return None
+    return _vector(names)
+
+
+def _vector(names: list[str]) -> AxisMap | None:
+    """The three elements of the only vector of forces, in their order: ``F[1]``, ``F[2]``, ``F[3]``."""
+    vectors: dict[str, dict[str, str]] = {}
+    for name in names:
+        if found := _VECTOR.match(name):
+            vectors.setdefault(found["base"], {})[found["index"]] = name
+    whole = [v for v in vectors.values() if sorted(v) == ["1", "2", "3"]]
+    if len(vectors) != 1 or not whole:
+        return None
+    return AxisMap(tuple((axis, whole[0][str(k)]) for k, axis in enumerate(AXES, 1)))
 
 
 def _matches(pattern: re.Pattern[str], axis: str, name: str) -> bool:

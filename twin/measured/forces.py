@@ -98,7 +98,7 @@ def _map_for(raw: RawLog, axis_map: AxisMap | None) -> tuple[AxisMap, list[str]]
     by_name = guess_map(raw.columns)
     if by_name is not None:
         return by_name, []
-    offer = (candidates or list(raw.columns))[:3]
+    offer = _offer(candidates or list(raw.columns))
     if not offer:
         raise MeasuredError(f"{raw.source}: no columns of numbers besides the time; columns are {raw.listing()}")
     example = ",".join(f"{axis}={name}" for axis, name in zip(AXES, offer, strict=False))
@@ -106,6 +106,12 @@ def _map_for(raw: RawLog, axis_map: AxisMap | None) -> tuple[AxisMap, list[str]]
         f"{raw.source}: the names do not show which columns are Fx, Fy and Fz; columns are {raw.listing()}; "
         f'give them with their signs, e.g. --map "{example}"'
     )
+
+
+def _offer(names: list[str]) -> list[str]:
+    """A column for each axis in an example: named after it where there is one."""
+    alike = [next((n for n in names if re.search(rf"f[\s_.-]*{axis}", n, re.IGNORECASE)), "") for axis in AXES]
+    return alike if all(alike) else names[:3]
 
 
 def _may_be_force(channel: Channel) -> bool:

@@ -43,6 +43,16 @@ class Table:
     not_read: tuple[str, ...] = field(default=())
 
 
+def distinct(names: Sequence[str]) -> tuple[str, ...]:
+    """Names that differ: a second ``Fx`` becomes ``Fx (2)``, an empty one ``column3``."""
+    made: list[str] = []
+    for index, name in enumerate(names):
+        base = name or f"column{index + 1}"
+        count = sum(m == base or m.startswith(f"{base} (") for m in made)
+        made.append(base if not count else f"{base} ({count + 1})")
+    return tuple(made)
+
+
 def table(
     path: Path,
     format_name: str,
@@ -71,7 +81,7 @@ def table(
     values = np.column_stack([values.astype(np.float64) for _, _, values in columns])
     return Table(
         format=format_name,
-        names=tuple(name for name, _, _ in columns),
+        names=distinct([name for name, _, _ in columns]),
         units=tuple(unit for _, unit, _ in columns),
         values=values,
         rows=np.arange(1, len(values) + 1),

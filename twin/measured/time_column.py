@@ -234,7 +234,7 @@ def _increasing(
     if t_s[-1] <= t_s[0]:
         raise MeasuredError(f"{path}: the time does not increase at {t_s[0]:g} s, expected increasing time")
     if (steps == 0.0).any():
-        rate = (len(t_s) - 1) / (t_s[-1] - t_s[0])
+        rate = _rate_of_coarse(t_s, steps)
         if table.rate_hz and abs(rate / table.rate_hz - 1.0) < _SAME_RATE:
             rate = table.rate_hz
         note = f"time column too coarse, {int((steps == 0.0).sum())} times occur twice: time counted at {rate:g} Hz"
@@ -247,6 +247,17 @@ def _increasing(
     if jitter > 0.05:
         notes.append(f"uneven sampling: half of the intervals are off by more than {100.0 * jitter:.0f} %")
     return t_s, rate, notes
+
+
+def _rate_of_coarse(t_s: FloatArray, steps: FloatArray) -> float:
+    """Samples a second where times repeat: between the beginnings of the second and the last run of equal times.
+
+    The first run may begin, and the last one end, anywhere in its step.
+    """
+    begins = np.flatnonzero(steps > 0.0) + 1
+    if len(begins) < 2:
+        return (len(t_s) - 1) / float(t_s[-1] - t_s[0])
+    return float(begins[-1] - begins[0]) / float(t_s[begins[-1]] - t_s[begins[0]])
 
 
 def _rate_of(steps: FloatArray) -> float:

@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -29,13 +28,19 @@ _START = re.compile(r"^(?:t0|t_0|start|wf_start_offset|start_?time)$", re.IGNORE
 
 
 def columns_table(
-    path: Path, format_name: str, arrays: Sequence[Named], scalars: Mapping[str, float], group: str | None = None
+    path: Path,
+    format_name: str,
+    arrays: Sequence[Named],
+    scalars: Mapping[str, float],
+    group: str | None = None,
+    refused: Sequence[str] = (),
 ) -> Table:
     """Choose the arrays that are columns of one recording.
 
     Args:
         scalars: single numbers next to them, by path; a sampling rate or interval is searched among them.
         group: part of the container to read; None for all of it.
+        refused: what else the file holds and cannot be read, each with the reason.
 
     Raises:
         MeasuredError: no columns; the same force several times; an unknown group.
@@ -43,8 +48,11 @@ def columns_table(
     arrays = _in_group(path, arrays, group)
     columns = [column for a in arrays for column in _columns(a)]
     if not columns:
-        raise MeasuredError(f"{path}: no arrays of numbers found, expected a time and forces ({format_name})")
+        other = f"; not read: {'; '.join(refused)}" if refused else ""
+        raise MeasuredError(f"{path}: no arrays of numbers found, expected a time and forces ({format_name}){other}")
+    paths = [c.name for c in columns]
     columns = _short_names(columns)
+    origin = dict(zip((c.name for c in columns), paths, strict=True))
     needed = _needed(columns)
     if not needed:
         columns, left = _of_one_length(columns)
@@ -55,16 +63,24 @@ def columns_table(
     aligned = on_one_clock(path, columns, needed)
     left += aligned.not_read
     notes = [f"of another length, not read: {', '.join(left[:6])}"] if left and not aligned.not_read else []
-    rate_hz, start_s = _clock(scalars)
+    rate_hz, start_s = clock_of(_near(scalars, origin[needed[-1]]))
     return table(
         path,
         format_name,
         [(c.name, c.unit, c.values) for c in aligned.columns],
         rate_hz=aligned.rate_hz or rate_hz,
-        start_s=start_s if aligned.start_s is None else aligned.start_s,
+        start_s=next((s for s in (aligned.start_s, start_s) if s is not None), 0.0),
         notes=[*notes, *aligned.notes],
-        not_read=left,
+        not_read=[*left, *refused],
     )
+
+
+def _near(scalars: Mapping[str, float], column: str) -> Mapping[str, float]:
+    """The single numbers of the groups that hold a column, if a rate is among them."""
+    near = {
+        n: v for n, v in scalars.items() if f"/{column}/".startswith(f"/{n.rpartition('/')[0]}/".replace("//", "/"))
+    }
+    return near if clock_of(near)[0] is not None else scalars
 
 
 def _needed(columns: Sequence[Named]) -> list[str]:
@@ -128,9 +144,9 @@ def _refuse_several(path: Path, columns: list[Named]) -> None:
         )
 
 
-def _clock(scalars: Mapping[str, float]) -> tuple[float | None, float]:
-    """Sampling rate, Hz, and first time, s, from single numbers."""
-    rate, start = None, 0.0
+def clock_of(scalars: Mapping[str, float]) -> tuple[float | None, float | None]:
+    """Sampling rate, Hz, and first time, s, from single numbers; None where none states it."""
+    rate, start = None, None
     for name, value in scalars.items():
         base, unit = split_unit(name.rpartition("/")[2])
         known = find_unit(unit)
@@ -141,22 +157,3 @@ def _clock(scalars: Mapping[str, float]) -> tuple[float | None, float]:
         elif _START.match(base):
             start = value
     return rate, start
-
-
-def flatten(data: Any, prefix: str, arrays: list[Named], scalars: dict[str, float]) -> None:
-    """Nested mappings as arrays and single numbers by path; other values are skipped."""
-    if isinstance(data, Mapping):
-        for key, value in data.items():
-            flatten(value, f"{prefix}/{key}" if prefix else str(key), arrays, scalars)
-        return
-    try:
-        values = np.asarray(data)
-        numeric = values.dtype.kind in "fiub"
-    except ValueError:
-        return
-    if not numeric:
-        return
-    if values.size == 1:
-        scalars[prefix] = float(values.reshape(()))
-    else:
-        arrays.append(Named(prefix, "", values.astype(np.float64)))

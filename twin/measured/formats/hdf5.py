@@ -9,16 +9,19 @@ from typing import Any
 import numpy as np
 
 from twin.errors import MeasuredError
-from twin.measured.formats.arrays_in import columns_table
+from twin.measured.bounds import check_size
+from twin.measured.formats.arrays_in import clock_of, columns_table
 from twin.measured.formats.one_clock import Named
 from twin.measured.table import Table
 
 _UNIT_KEYS = ("unit", "units", "unit_string", "engineeringunit", "si_unit", "y_unit")
-_MATLAB_OWN = "#"
 
 
-def read_hdf5(path: Path, group: str | None = None, format_name: str = "HDF5") -> Table:
+def read_hdf5(path: Path, group: str | None = None) -> Table:
     """Data sets of numbers anywhere in the file; compound ones and matrices are split into columns.
+
+    Attributes give units, rates and starts; ``scale_factor`` and ``add_offset`` turn stored numbers into values, as in
+    the CF conventions.
 
     Raises:
         MeasuredError: no HDF5 file, or nothing in it that is a log.
@@ -27,13 +30,14 @@ def read_hdf5(path: Path, group: str | None = None, format_name: str = "HDF5") -
 
     arrays: list[Named] = []
     scalars: dict[str, float] = {}
+    sizes: list[int] = []
 
     def visit(name: str, node: Any) -> None:
-        if name.startswith(_MATLAB_OWN):
-            return
         for key, value in node.attrs.items():
             _scalar(f"{name}/{key}", value, scalars)
         if isinstance(node, h5py.Dataset):
+            sizes.append(8 * int(node.size) * max(len(node.dtype.names or ()), 1))
+            check_size(path, sum(sizes), "its data sets")
             _dataset(name, node, arrays, scalars)
 
     try:
@@ -41,9 +45,11 @@ def read_hdf5(path: Path, group: str | None = None, format_name: str = "HDF5") -
             for key, value in file.attrs.items():
                 _scalar(key, value, scalars)
             file.visititems(visit)
+    except MeasuredError:
+        raise
     except Exception as error:  # h5py raises many kinds on damaged files
         raise MeasuredError(f"{path}: no HDF5 file that can be read: {error}") from error
-    return columns_table(path, format_name, arrays, scalars, group)
+    return columns_table(path, "HDF5", arrays, scalars, group)
 
 
 def _dataset(name: str, node: Any, arrays: list[Named], scalars: dict[str, float]) -> None:
@@ -53,12 +59,17 @@ def _dataset(name: str, node: Any, arrays: list[Named], scalars: dict[str, float
         fields = [f for f in node.dtype.names if node.dtype[f].kind in "fiub"]
         arrays += [Named(f"{name}/{f}", units.get(f, ""), np.asarray(node[f], np.float64)) for f in fields]
         return
-    if node.dtype.kind not in "fiub" or "MATLAB_empty" in node.attrs or _class(node.attrs) == "char":
+    if node.dtype.kind not in "fiub":
         return
     if node.size == 1:
         _scalar(name, node[()], scalars)
     elif node.size:
-        arrays.append(Named(name, _unit(node.attrs), np.asarray(node[()], np.float64)))
+        values = np.asarray(node[()], np.float64)
+        scale, offset = (_number(node.attrs, key) for key in ("scale_factor", "add_offset"))
+        if scale is not None or offset is not None:
+            values = values * (1.0 if scale is None else scale) + (offset or 0.0)
+        rate_hz, start_s = clock_of({key: v for key in node.attrs if (v := _number(node.attrs, key)) is not None})
+        arrays.append(Named(name, unit_of(node.attrs), values, rate_hz, start_s))
 
 
 def _scalar(name: str, value: Any, scalars: dict[str, float]) -> None:
@@ -67,11 +78,19 @@ def _scalar(name: str, value: Any, scalars: dict[str, float]) -> None:
         scalars[name] = float(values.reshape(()))
 
 
-def _unit(attributes: Mapping[str, Any]) -> str:
+def unit_of(attributes: Mapping[str, Any]) -> str:
+    """The unit that an attribute states, ``""`` without."""
     for key in attributes:
         if key.lower() in _UNIT_KEYS:
             return _text(attributes[key])
     return ""
+
+
+def _number(attributes: Mapping[str, Any], key: str) -> float | None:
+    found: dict[str, float] = {}
+    if key in attributes:
+        _scalar(key, attributes[key], found)
+    return found.get(key)
 
 
 def _field_units(attributes: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, str]:
@@ -83,8 +102,9 @@ def _field_units(attributes: Mapping[str, Any], names: tuple[str, ...]) -> dict[
     return found
 
 
-def _class(attributes: Mapping[str, Any]) -> str:
-    return _text(attributes["MATLAB_class"]) if "MATLAB_class" in attributes else ""
+def attribute_text(attributes: Mapping[str, Any], key: str) -> str:
+    """An attribute as text, ``""`` without."""
+    return _text(attributes[key]) if key in attributes else ""
 
 
 def _text(value: Any) -> str:

@@ -24,11 +24,13 @@ def read_mcap(path: Path, group: str | None = None) -> Table:
     try:
         if group is None and is_run(path):
             return _run(path)
-        topic, columns = read_numbers(path, group)
+        found = read_numbers(path, group)
     except ArchiveError as error:
         raise MeasuredError(str(error)) from error
-    rows = [(name, "", values) for name, values in columns.items()]
-    return table(path, f"MCAP, topic {topic}", rows, row_word="message")
+    rows = [(name, "", values) for name, values in found.columns.items()]
+    return table(
+        path, f"MCAP, topic {found.topic}", rows, row_word="message", notes=found.notes, not_read=found.not_read
+    )
 
 
 def _run(path: Path) -> Table:

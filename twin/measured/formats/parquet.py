@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import MeasuredError
+from twin.measured.bounds import check_size
 from twin.measured.table import Table, table
 
 
@@ -21,17 +22,36 @@ def read_parquet(path: Path) -> Table:
     from pyarrow import parquet
 
     try:
-        read = parquet.read_table(path)
+        file = parquet.ParquetFile(path)
+        _check_sizes(path, file.metadata)
+        read = file.read()
         read.validate(full=True)
-    except (OSError, pa.ArrowException) as error:
-        raise MeasuredError(f"{path}: no Parquet file that can be read: {error}") from error
-    columns = []
-    for field in read.schema:
-        values, unit = _numbers(read.column(field.name), field.type)
-        if values is not None:
-            columns.append((field.name, unit or _unit(field.metadata), values))
+        names = read.schema.names
+    except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
+        raise MeasuredError(f"{path}: no Parquet file that can be read: {_reason(error)}") from error
+    columns, left = [], []
+    for index, name in enumerate(names):
+        field = read.schema.field(index)
+        values, unit = _numbers(read.column(index), field.type)
+        if values is None:
+            left.append(f"{name} ({field.type})")
+        else:
+            columns.append((name, unit or _unit(field.metadata), values))
     rate = (read.schema.metadata or {}).get(b"rate_hz")
-    return table(path, "Parquet", columns, rate_hz=_number(rate), row_word="row")
+    return table(path, "Parquet", columns, rate_hz=_number(rate), row_word="row", not_read=left)
+
+
+def _reason(error: Exception) -> str:
+    """The libraries' message; a column's name in another code than UTF-8 by itself."""
+    return "a name that is not UTF-8" if isinstance(error, UnicodeDecodeError) else str(error)
+
+
+def _check_sizes(path: Path, metadata: Any) -> None:
+    """Refuse a table that is larger unpacked than measured forces can be."""
+    groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
+    chunks = [group.column(k) for group in groups for k in range(group.num_columns)]
+    check_size(path, 8.0 * metadata.num_rows * metadata.num_columns, "its columns")
+    check_size(path, sum(chunk.total_uncompressed_size for chunk in chunks), "its columns")
 
 
 def _numbers(column: Any, kind: Any) -> tuple[Any, str]:
@@ -44,6 +64,9 @@ def _numbers(column: Any, kind: Any) -> tuple[Any, str]:
         scale = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[kind.unit]
         first = pc.min(whole).as_py() if pa.types.is_timestamp(kind) else 0
         return (whole.to_numpy() - (first or 0)) * scale, "s"
+    if pa.types.is_time(kind):
+        scale = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[kind.unit]
+        return column.cast(pa.int32() if pa.types.is_time32(kind) else pa.int64()).to_numpy() * scale, "s"
     if pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_decimal(kind):
         return column.cast(pa.float64()).to_numpy().astype(np.float64), ""
     return None, ""

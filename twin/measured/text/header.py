@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from twin.errors import MeasuredError
+from twin.measured.table import distinct
 from twin.measured.text.layout import Layout, fields_of
 from twin.measured.units import find_unit, is_unit_text
 
@@ -78,7 +79,7 @@ def find_header(
         )
     if names is None:
         return Header(tuple(f"column{i + 1}" for i in range(layout.width)), spare, False, seen)
-    return Header(_distinct(names), spare, True, seen)
+    return Header(distinct(names), spare, True, seen)
 
 
 def _fields(line: str, layout: Layout) -> list[str]:
@@ -118,16 +119,6 @@ def _wordy(row: Sequence[str], layout: Layout) -> bool:
 def _is_rate_line(row: Sequence[str]) -> bool:
     text = " ".join(row)
     return ":" in text or "=" in text or _RATE.search(text) is not None or _INTERVAL.search(text) is not None
-
-
-def _distinct(names: Sequence[str]) -> tuple[str, ...]:
-    """Names that differ: a second ``Fx`` becomes ``Fx (2)``, an empty one ``column3``."""
-    made: list[str] = []
-    for index, name in enumerate(names):
-        base = name or f"column{index + 1}"
-        count = sum(m == base or m.startswith(f"{base} (") for m in made)
-        made.append(base if not count else f"{base} ({count + 1})")
-    return tuple(made)
 
 
 def stated_rate_hz(lines: Sequence[str]) -> float | None:
