@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+#: Clearance of bodies that must not touch the stock, at slice pitches from 0.05 to 0.55 mm.
+_CLEARANCE_MM = 0.005
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tolerance:
@@ -15,10 +18,10 @@ class Tolerance:
         depth_mm: depth inside a swept volume from which a point counts as removed; hides rounding on its surface.
         gate: least n.f (cosine between edge normal and feed) that counts as the front of the tool; hides rounding at 0.
         chip: least uncut chip thickness, relative to the feed per tooth, that makes a chip and an edge force.
-        contact_mm3: volume of material that a body must sweep for a collision.
-        clearance_mm: reduction of the radius of shank and holder, so that a shank of the cutter's own diameter may rub
-            along the wall that the cutter made.
-
+        contact_mm3: volume of material that a body less its clearance must sweep for a collision; hides what the chords
+            of a section leave at its kinks.
+        clearance_mm: how deep a shank, a holder, or a cutting part that must not cut may be in the material without a
+            collision, so that a tool may go along a surface that it made, whatever the chords of that surface.
     """
 
     chord_mm: float
@@ -34,6 +37,6 @@ class Tolerance:
         return cls(
             chord_mm=0.005 * pitch_mm,
             depth_mm=1e-6 * pitch_mm,
-            contact_mm3=pitch_mm**3,
-            clearance_mm=0.1 * pitch_mm,
+            contact_mm3=0.1 * pitch_mm**3,
+            clearance_mm=max(min(_CLEARANCE_MM, 0.1 * pitch_mm), 0.009 * pitch_mm),
         )

@@ -39,7 +39,9 @@ def test_what_is_not_given_has_the_documented_default(tmp_path: Path) -> None:
     assert (job.program.dialect, job.program.arc_centres, job.program.units) == ("fanuc", "incremental", "mm")
     assert (job.program.block_delete, job.program.tool) == (False, 0)
     assert job.machine.model_dump() == {
+        "rapid": None,
         "rapid_mm_min": 48000.0,
+        "axis_rapid_mm_min": None,
         "tool_change_s": 0.0,
         "home_mm": None,
         "start_mm": None,

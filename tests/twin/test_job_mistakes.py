@@ -31,15 +31,18 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"program__tool": 3}, "program.tool = 3: expected 0 or the number of a tool: 1, 7"),
     (
         {"machine__rapid_mm_min": "fast"},
-        'machine.rapid_mm_min = "fast": expected a number above 0 (rapid traverse rate along the path, mm/min)',
+        'machine.rapid_mm_min = "fast": expected a number above 0 '
+        "(rapid traverse rate, of each axis (independent) or along the path (straight), mm/min)",
     ),
     (
         {"machine__rapid_mm_min": True},
-        "machine.rapid_mm_min = true: expected a number above 0 (rapid traverse rate along the path, mm/min)",
+        "machine.rapid_mm_min = true: expected a number above 0 "
+        "(rapid traverse rate, of each axis (independent) or along the path (straight), mm/min)",
     ),
     (
         {"machine__rapid_mm_min": float("nan")},
-        "machine.rapid_mm_min = nan: expected a number above 0 (rapid traverse rate along the path, mm/min)",
+        "machine.rapid_mm_min = nan: expected a number above 0 "
+        "(rapid traverse rate, of each axis (independent) or along the path (straight), mm/min)",
     ),
     (
         {"machine__offsets__G60": [0, 0, 0]},

@@ -4,6 +4,7 @@
 """
 
 from twin.job.job_file import (
+    RAPIDS,
     Box,
     Cutting,
     Cylinder,
@@ -21,6 +22,7 @@ from twin.job.job_file import (
 from twin.job.load import job_from_dict, load_job
 
 __all__ = [
+    "RAPIDS",
     "Box",
     "Cutting",
     "Cylinder",

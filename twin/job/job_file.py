@@ -22,6 +22,15 @@ from twin.settings.table import FilePath, Key, Point, Table
 STOCKS = ("box_mm", "cylinder_mm", "stl")
 SixNumbers: TypeAlias = Annotated[tuple[float, float, float, float, float, float], Strict(False)]
 Rows: TypeAlias = Annotated[tuple[Annotated[tuple[float, ...], Strict(False)], ...], Strict(False)]
+RapidPath: TypeAlias = Literal["independent", "straight"]
+#: Path of rapids on each control as delivered: FANUC parameter 1401 bit 1 is 0, Haas setting 335 is off; LinuxCNC and
+#: GRBL move all axes in a straight line.
+RAPIDS: dict[str, RapidPath] = {
+    "fanuc": "independent",
+    "haas": "independent",
+    "linuxcnc": "straight",
+    "grbl": "straight",
+}
 WorkOffset: TypeAlias = Literal["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"]
 
 
@@ -58,7 +67,19 @@ class Program(Table):
 class Machine(Table):
     """The machine and its setup. Points are positions of the gauge point in machine coordinates."""
 
-    rapid_mm_min: float = Field(default=48000.0, gt=0.0, description="rapid traverse rate along the path, mm/min")
+    rapid: Annotated[RapidPath | None, Key(unset="as the control: independent for fanuc and haas")] = Field(
+        default=None,
+        description="path of rapids: each axis at its own rate until it arrives (independent), or a straight line "
+        "(straight)",
+    )
+    rapid_mm_min: float = Field(
+        default=48000.0,
+        gt=0.0,
+        description="rapid traverse rate, of each axis (independent) or along the path (straight), mm/min",
+    )
+    axis_rapid_mm_min: Annotated[Point | None, Key(unset="rapid_mm_min for each")] = Field(
+        default=None, description="rapid traverse rates of X, Y and Z (independent), above 0, mm/min"
+    )
     tool_change_s: float = Field(default=0.0, ge=0.0, description="time of one tool change, s")
     home_mm: Annotated[Point | None, Key(unset="above the stock")] = Field(
         default=None, description="position of the gauge point at the G28 reference point, mm"

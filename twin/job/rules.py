@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from twin.job.facts import tools_of
-from twin.job.job_file import STOCKS
+from twin.job.job_file import RAPIDS, STOCKS
 from twin.job.tool_rules import TOOL_RULES
 from twin.settings.facts import Facts
 from twin.settings.problems import Problem, wrong
@@ -61,6 +61,19 @@ def stock_offset_known(facts: Facts, _folder: Path) -> Iterator[Problem]:
     if wcs is not None and offsets is not None and wcs not in offsets:
         known = ", ".join(offsets) or "none is given"
         yield wrong(("stock", "wcs"), wcs, f"one of the offsets in machine.offsets: {known}")
+
+
+def axis_rapids_sound(facts: Facts, _folder: Path) -> Iterator[Problem]:
+    """Rates of single axes are above 0, and given only where the axes move independently."""
+    rates = facts.get("machine", "axis_rapid_mm_min")
+    if rates is None:
+        return
+    for index, rate in enumerate(rates):
+        if not rate > 0.0:
+            yield wrong(("machine", "axis_rapid_mm_min", index), rate, "a number above 0")
+    path = facts.get("machine", "rapid") or RAPIDS.get(facts.get("program", "dialect") or "")
+    if path == "straight":
+        yield wrong(("machine", "axis_rapid_mm_min"), rates, 'it only with machine.rapid = "independent"')
 
 
 def some_tool(facts: Facts, _folder: Path) -> Iterator[Problem]:
@@ -159,6 +172,7 @@ RULES: tuple[Rule, ...] = (
     box_has_extent,
     cylinder_has_extent,
     stock_offset_known,
+    axis_rapids_sound,
     some_tool,
     tool_numbers_differ,
     first_tool_known,

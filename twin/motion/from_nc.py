@@ -19,6 +19,7 @@ from gcode.events import (
 )
 from twin.arrays import FloatArray
 from twin.motion.path import Arc, Move, path_length_mm
+from twin.motion.rapids import independent_legs
 
 
 def moves_from_nc(
@@ -28,6 +29,7 @@ def moves_from_nc(
     start_mm: Point,
     tool_length_mm: Mapping[int, float],
     rapid_mm_min: float,
+    axis_rapid_mm_min: FloatArray | None = None,
 ) -> Iterator[Move | Event]:
     """Turn motions and dwells into moves and pass all other events on.
 
@@ -39,7 +41,8 @@ def moves_from_nc(
         origin_mm: origin of the workpiece frame in machine coordinates, shape (3,).
         start_mm: gauge point when the program starts, machine coordinates; where a dwell before any motion is.
         tool_length_mm: gauge length of each tool by number; missing tools count as 0.
-        rapid_mm_min: speed of positioning along the path.
+        rapid_mm_min: speed of positioning along a straight path.
+        axis_rapid_mm_min: shape (3,), rates of axes that move independently in rapids; None where rapids are straight.
 
     Raises:
         GcodeError: for a motion with an axis other than X, Y and Z away from 0.
@@ -52,7 +55,10 @@ def moves_from_nc(
                 continue
             move = _move(event, origin_mm, tool_length_mm, rapid_mm_min)
             gauge = move.end_mm + _up(tool_length_mm.get(move.tool, 0.0))
-            yield move
+            if move.rapid and axis_rapid_mm_min is not None:
+                yield from independent_legs(move, axis_rapid_mm_min)
+            else:
+                yield move
         elif isinstance(event, Dwell):
             tip = gauge - _up(tool_length_mm.get(event.state.tool, 0.0))
             yield Move(

@@ -134,6 +134,7 @@ def _plane_nodes(
         return written
     section = _Section(w, 0.5 * (high + low), half * _INSET)
     first = written
+    flat_v = _flat_bottom(body, motion, planes.horizontal)
     left = _node_at(body, motion, planes, section, 0.0)
     written = _append_node(left, nodes, fresh, written)
     for piece in range(_START_INTERVALS):
@@ -142,7 +143,7 @@ def _plane_nodes(
         while depth >= 0:
             right = _node_of(stack, depth)
             middle = _node_at(body, motion, planes, section, 0.5 * (left.phi + right.phi))
-            if depth >= _MAX_DEPTH or _is_straight(left, middle, right, planes.chord):
+            if depth >= _MAX_DEPTH or _is_straight(left, middle, right, planes.chord, flat_v):
                 written = _append_node(right, nodes, fresh, written)
                 left = right
                 depth -= 1
@@ -178,10 +179,23 @@ def _node_of(stack: FloatArray, depth: int) -> _Node:
 
 
 @njit
-def _is_straight(left: _Node, middle: _Node, right: _Node, chord: float) -> bool:
-    """Whether lo and hi need no node between two, judged by one in the middle."""
+def _flat_bottom(body: BodyShape, motion: Motion, horizontal: bool) -> float:
+    """Height up to which lo is on the body's flat bottom at the start; -inf where that makes no kink in lo."""
+    if horizontal or body.meridian.disc == 0.0:
+        return -math.inf
+    return motion.v + max(0.0, -body.drop) + _SAME_SECTION * body.meridian.radius
+
+
+@njit
+def _is_straight(left: _Node, middle: _Node, right: _Node, chord: float, flat_v: float) -> bool:
+    """Whether lo and hi need no node between two, judged by one in the middle.
+
+    Between a node on the flat bottom and one beyond its kink the section may be fresh although it is at neither.
+    """
     if not (left.fresh or right.fresh or middle.fresh):
-        return True
+        on_flat = left.lo <= flat_v
+        if on_flat == (right.lo <= flat_v) and on_flat == (middle.lo <= flat_v):
+            return True
     if not (left.lo <= left.hi and right.lo <= right.hi and middle.lo <= middle.hi):
         return True
     return (

@@ -10,9 +10,11 @@ from twin.arrays import FloatArray
 from twin.errors import ReplayError
 from twin.motion.path import Move
 from twin.record import Collision, CollisionKind
-from twin.simulation.material import Material
+from twin.simulation.material import Material, Touch
 from twin.simulation.tools import ToolSetup
 
+#: Where the tool has neither shank nor holder in the job.
+_ASSUMED_SHANK = "the tool above its flutes, where its diameter is taken to go on, touches the stock"
 _WORDS: dict[CollisionKind, str] = {
     "rapid": "rapid motion through the stock",
     "spindle-stopped": "feed motion through the stock with the spindle stopped",
@@ -23,35 +25,42 @@ _WORDS: dict[CollisionKind, str] = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contact:
-    """Time and tool position at which a collision began, and the volume of material that was met."""
+    """Time and tool position at which a body first met material, and the volumes met since, see `Touch`."""
 
     t_s: float
     start_mm: FloatArray
+    met_mm3: float
     volume_mm3: float
 
 
 class Contacts:
     """Collisions of one motion by kind.
 
-    What a cutting part removes adds up over the pieces of a motion. Shank and holder remove nothing and would meet the
-    same material again in the next piece, so for them the piece that met most counts.
+    The material that a cutting part removes adds up over the pieces of a motion. Shank and holder remove nothing and
+    would meet the same material again in the next piece, so for them the piece that met most counts. The sums of the
+    whole motion decide, so a collision does not depend on where the motion is divided.
     """
 
     def __init__(self) -> None:
-        self.found: dict[CollisionKind, Contact] = {}
+        self._met: dict[CollisionKind, Contact] = {}
 
-    def add(self, touches: Iterable[tuple[CollisionKind, float]], t_s: float, start_mm: FloatArray) -> None:
+    def add(self, touches: Iterable[Touch], t_s: float, start_mm: FloatArray) -> None:
         """Note the touches of one piece of the motion.
 
         Args:
-            touches: kind and volume of each, mm3.
             t_s, start_mm: machine time and tool tip, shape (3,), at the beginning of the piece.
         """
-        for kind, volume in touches:
-            first = self.found.get(kind, Contact(t_s, start_mm, 0.0))
-            removing = kind in ("rapid", "spindle-stopped")
-            total = first.volume_mm3 + volume if removing else max(first.volume_mm3, volume)
-            self.found[kind] = Contact(first.t_s, first.start_mm, total)
+        for kind, met, volume in touches:
+            first = self._met.get(kind, Contact(t_s, start_mm, 0.0, 0.0))
+            if kind in ("rapid", "spindle-stopped"):
+                met, volume = first.met_mm3 + met, first.volume_mm3 + volume
+            else:
+                met, volume = max(first.met_mm3, met), max(first.volume_mm3, volume)
+            self._met[kind] = Contact(first.t_s, first.start_mm, met, volume)
+
+    def found(self, least_mm3: float) -> dict[CollisionKind, Contact]:
+        """The contacts that met more than a volume of material, by the kind of their collision."""
+        return {kind: contact for kind, contact in self._met.items() if contact.met_mm3 > least_mm3}
 
 
 class StartCheck:
@@ -75,7 +84,7 @@ class StartCheck:
             return
         self._checked_tool = tool.number
         volume = material.volume_inside(tool, move.start_mm)
-        if material.significant(volume):
+        if volume > material.contact_mm3:
             x, y, z = move.start_mm
             raise ReplayError(
                 f"{self._program}:{move.nc_line}: tool T{tool.number} ({tool.description}) begins inside the "
@@ -84,11 +93,14 @@ class StartCheck:
             )
 
 
-def collision_record(kind: CollisionKind, contact: Contact, move: Move, program: str) -> Collision:
+def collision_record(
+    kind: CollisionKind, contact: Contact, move: Move, program: str, *, shank_assumed: bool
+) -> Collision:
     """The record of a collision, with a human-readable line that names NC line and position."""
+    words = _ASSUMED_SHANK if kind == "shank" and shank_assumed else _WORDS[kind]
     x, y, z = point(contact.start_mm)
     message = (
-        f"{program}:{move.nc_line}: T{move.tool}: {_WORDS[kind]}, "
+        f"{program}:{move.nc_line}: T{move.tool}: {words}, "
         f"from X{x:.3f} Y{y:.3f} Z{z:.3f}, {contact.volume_mm3:.3g} mm3"
     )
     return Collision(

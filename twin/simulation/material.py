@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -24,11 +24,22 @@ TOGETHER = 8
 #: A sweep this near to a motion's line lies on it, mm.
 SAME_LINE_MM = 1e-9
 
-
-#: Kind of a collision and the volume of material in its way.
-Touch: TypeAlias = tuple[CollisionKind, float]
 #: Lower and upper corner, both of shape (3,).
 Box: TypeAlias = tuple[FloatArray, FloatArray]
+
+
+class Touch(NamedTuple):
+    """A body that must not touch the stock, in the material.
+
+    Attributes:
+        kind: of the collision.
+        met_mm3: volume of material in the way of the body less its clearance, above 0.
+        volume_mm3: volume of material in its way.
+    """
+
+    kind: CollisionKind
+    met_mm3: float
+    volume_mm3: float
 
 
 class Material:
@@ -43,12 +54,13 @@ class Material:
         threads: how many work on the slices.
 
     Attributes:
+        contact_mm3: volume of material that a body must meet for a collision.
         removed_mm3: volume removed by each tool, by number.
     """
 
     def __init__(self, workpiece: TriSlices, tolerance: Tolerance, threads: int) -> None:
         self.workpiece = workpiece
-        self._tolerance = tolerance
+        self.contact_mm3 = tolerance.contact_mm3
         self._removal = Removal(workpiece, tolerance.chord_mm, threads)
         self._waiting: deque[tuple[Sweep, int]] = deque()
         self._window_mm = PENDING_PITCHES * float(np.max(workpiece.pitch_mm))
@@ -81,6 +93,8 @@ class Material:
     ) -> Iterator[Touch]:
         """Move the cutting part in a straight line: it removes material, now or a little later.
 
+        Where it must not cut and goes no deeper into the material than the clearance, it removes nothing.
+
         Args:
             forbidden: kind of the collision when it meets material, None for a motion that is to cut.
 
@@ -91,19 +105,22 @@ class Material:
             self._wait(Sweep(tool.cutter, start_mm, end_mm), tool.number)
             return
         self.flush()
-        self._waiting.append((Sweep(tool.cutter, start_mm, end_mm), tool.number))
-        volume = self._subtract(1)
-        if self.significant(volume):
-            yield forbidden, volume
+        met = self._removal.cut(Sweep(tool.guard, start_mm, end_mm), apply=False)
+        if met > 0.0:
+            self._waiting.append((Sweep(tool.cutter, start_mm, end_mm), tool.number))
+            yield Touch(forbidden, met, self._subtract(1))
 
     def touches(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> Iterator[Touch]:
         """Shank and holder moved in a straight line, after the cutting part has gone there; they remove nothing."""
         for kind, body in tool.rigid:
             if self._meets(body, start_mm, end_mm):
-                self.flush()
-                volume = self._removal.cut(Sweep(body, start_mm, end_mm), apply=False)
-                if self.significant(volume):
-                    yield kind, volume
+                sweep = Sweep(body, start_mm, end_mm)
+                volume = self._removal.cut(sweep, apply=False)
+                if volume > 0.0 and self._waiting:
+                    self.flush()
+                    volume = self._removal.cut(sweep, apply=False)
+                if volume > 0.0:
+                    yield Touch(kind, volume, volume)
 
     def _wait(self, sweep: Sweep, tool: int) -> None:
         self._waiting.append((sweep, tool))
@@ -122,13 +139,9 @@ class Material:
         self._subtract(len(self._waiting))
 
     def volume_inside(self, tool: ToolSetup, tip_mm: FloatArray) -> float:
-        """Volume of material inside the cutting part at rest, mm3."""
+        """Volume of material inside the cutting part at rest, less its clearance, mm3."""
         self.flush()
-        return self._removal.cut(Sweep(tool.cutter, tip_mm, tip_mm), apply=False)
-
-    def significant(self, volume_mm3: float) -> bool:
-        """Whether a volume is larger than the tolerance for contact."""
-        return volume_mm3 > self._tolerance.contact_mm3
+        return self._removal.cut(Sweep(tool.guard, tip_mm, tip_mm), apply=False)
 
     def _subtract(self, count: int) -> float:
         """Subtract the sweeps that have waited longest; returns the removed volume, mm3."""

@@ -7,6 +7,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from gcode.dialects import dialect_named
 from gcode.events import Event, ToolChange
 from gcode.flow.interpreter import interpret
@@ -14,7 +16,7 @@ from gcode.language.program import read_program
 from gcode.settings import MachineSettings, ToolOffset
 from twin.arrays import FloatArray
 from twin.errors import ReplayError
-from twin.job import Machine, Program, Tool
+from twin.job import RAPIDS, Machine, Program, Tool
 from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Move
 from twin.workpiece.stock import SliceSet
@@ -35,7 +37,9 @@ class ProgramMoves:
         settings: the machine as the interpreter needs it.
         origin_mm: shape (3,), work offset in which the stock is given.
         tool_length_mm: by tool number.
-        rapid_mm_min: speed of positioning motions.
+        rapid_mm_min: speed of straight positioning motions.
+        axis_rapid_mm_min: shape (3,), rates of the axes where they move independently in rapids, None where rapids are
+            straight.
 
     Raises:
         GcodeError: a program that cannot be interpreted, when its line comes.
@@ -48,6 +52,7 @@ class ProgramMoves:
     origin_mm: FloatArray
     tool_length_mm: Mapping[int, float]
     rapid_mm_min: float
+    axis_rapid_mm_min: FloatArray | None
 
     def __iter__(self) -> Iterator[Move | Event]:
         events = interpret(
@@ -62,6 +67,7 @@ class ProgramMoves:
             start_mm=self.settings.start_mm,
             tool_length_mm=dict(self.tool_length_mm),
             rapid_mm_min=self.rapid_mm_min,
+            axis_rapid_mm_min=self.axis_rapid_mm_min,
         )
 
     def checked_time_s(self, tool_change_s: float) -> float:
@@ -109,7 +115,15 @@ def program_moves(
         origin_mm=origin_mm,
         tool_length_mm={t.number: t.length_mm for t in tools},
         rapid_mm_min=machine.rapid_mm_min,
+        axis_rapid_mm_min=_axis_rapids(program, machine),
     )
+
+
+def _axis_rapids(program: Program, machine: Machine) -> FloatArray | None:
+    """Rates of the axes in rapids, None where the control moves in a straight line."""
+    if (machine.rapid or RAPIDS[program.dialect]) == "straight":
+        return None
+    return np.array(machine.axis_rapid_mm_min or (machine.rapid_mm_min,) * 3)
 
 
 def _machine_settings(

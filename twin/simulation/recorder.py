@@ -10,9 +10,9 @@ import numpy as np
 from gcode.events import Block, Event, ToolChange
 from twin.arrays import FloatArray
 from twin.motion.path import Move
-from twin.record import Collision, ForceSamples, NcEvent, RunSummary, Step
+from twin.record import Collision, CollisionKind, ForceSamples, NcEvent, RunSummary, Step
 from twin.simulation.clock import SpindleClock, Turned
-from twin.simulation.contacts import Contacts, collision_record, point
+from twin.simulation.contacts import Contact, collision_record, point
 from twin.simulation.material import Material
 from twin.simulation.nc_events import nc_event
 from twin.simulation.solve import IN_AIR, Solved
@@ -44,6 +44,7 @@ class Recorder:
         self._program = program
         self._descriptions = {number: tool.description for number, tool in tools.items()}
         self._without_forces = {number for number, tool in tools.items() if tool.forces is None}
+        self._without_shank = {number for number, tool in tools.items() if tool.shank_assumed}
         self._totals = Totals(self._descriptions)
         self._steps = 0
 
@@ -97,11 +98,11 @@ class Recorder:
         self._totals.add_step(step, sample_s)
         return step
 
-    def collisions(self, contacts: Contacts, move: Move) -> Iterator[Collision]:
+    def collisions(self, contacts: Mapping[CollisionKind, Contact], move: Move) -> Iterator[Collision]:
         """The records of a motion's collisions."""
-        for kind, contact in contacts.found.items():
+        for kind, contact in contacts.items():
             self._totals.collisions += 1
-            yield collision_record(kind, contact, move, self._program)
+            yield collision_record(kind, contact, move, self._program, shank_assumed=move.tool in self._without_shank)
 
     def summary(self, material: Material, *, complete: bool) -> RunSummary:
         """Sums, peaks and digest so far."""

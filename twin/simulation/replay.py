@@ -64,7 +64,7 @@ def cut(move: Move, setup: Setup) -> Iterator[Record]:
             contacts.add(material.cut(tool, *piece[:2], forbidden(move)), begun_s, start)
             yield from setup.preview.frame(material, recorder.t_s)
         contacts.add(material.touches(tool, start, end), begun_s, start)
-    yield from recorder.collisions(contacts, move)
+    yield from recorder.collisions(contacts.found(material.contact_mm3), move)
 
 
 def _steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iterator[Step]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -18,6 +19,11 @@ from twin.tolerance import Tolerance
 from twin.tools.edges import cutting_edges
 from twin.tools.shape import ToolShape, tool_shape
 
+#: Length of a shank that the job does not give, mm.
+_ENDLESS_MM = 10_000.0
+#: Name, diameter and length of a cylinder of a tool, mm.
+_Piece: TypeAlias = tuple[Literal["shank", "holder"], float, float]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ToolSetup:
@@ -25,7 +31,10 @@ class ToolSetup:
 
     Attributes:
         cutter: the circumscribed cutting part, the body that removes material.
-        rigid: bodies that must not touch the stock, with their names.
+        guard: the cutting part less the clearance, which must meet no material where the tool must not cut.
+        rigid: bodies that must not touch the stock, less the clearance, with their names.
+        shank_assumed: whether the job gives neither shank nor holder, so that the largest diameter of the cutting part
+            is taken to go on above the flutes.
         engager: finds the engaged part of its edges.
         forces: its force model, None where the job gives no coefficients.
         record: the tool for viewers and archives.
@@ -34,7 +43,9 @@ class ToolSetup:
     number: int
     description: str
     cutter: Body
+    guard: Body
     rigid: tuple[tuple[Literal["shank", "holder"], Body], ...]
+    shank_assumed: bool
     engager: Engager
     forces: ForceModel | None
     teeth: int
@@ -64,12 +75,15 @@ def tool_setup(tool: Tool, cutting: Cutting | None, fineness: Simulation, tolera
         runout_mm=tool.runout_mm,
         runout_angle_deg=tool.runout_angle_deg,
     )
+    cutter = Body.of(shape, chord_mm=tolerance.chord_mm)
     profile_mm = frozen(_profile(tool, shape), "profile_mm", (None, 2))
     return ToolSetup(
         number=tool.number,
         description=describe(tool),
-        cutter=Body.of(shape, chord_mm=tolerance.chord_mm),
-        rigid=_rigid_bodies(tool, shape, tolerance),
+        cutter=cutter,
+        guard=_guard(shape, cutter, tolerance),
+        rigid=_rigid_bodies(_pieces(tool) or _assumed_shank(shape), shape, tolerance),
+        shank_assumed=not _pieces(tool),
         engager=Engager(shape, edges, rows, fineness.engagement, tolerance),
         forces=ForceModel(edges, _coefficients(cutting), rows, tolerance) if cutting else None,
         teeth=tool.teeth,
@@ -90,21 +104,31 @@ def _coefficients(c: Cutting) -> CuttingCoefficients:
     )
 
 
-def _pieces(tool: Tool) -> list[tuple[Literal["shank", "holder"], float, float]]:
+def _pieces(tool: Tool) -> list[_Piece]:
     """Shank and holder as (name, diameter, length), upwards from the flutes."""
-    pieces: list[tuple[Literal["shank", "holder"], float, float]] = []
+    pieces: list[_Piece] = []
     if tool.shank is not None:
         pieces.append(("shank", tool.shank.diameter_mm, tool.shank.length_mm))
     pieces.extend(("holder", h.diameter_mm, h.length_mm) for h in tool.holder or ())
     return pieces
 
 
+def _guard(shape: ToolShape, cutter: Body, tolerance: Tolerance) -> Body:
+    """The cutting part less the clearance; all of it where the tool is smaller than that."""
+    inner = shape.inscribed(tolerance.clearance_mm)
+    return cutter if inner is None else Body.of(inner, above_tip_mm=tolerance.clearance_mm)
+
+
+def _assumed_shank(shape: ToolShape) -> list[_Piece]:
+    return [("shank", 2.0 * shape.max_radius_mm, _ENDLESS_MM)]
+
+
 def _rigid_bodies(
-    tool: Tool, shape: ToolShape, tolerance: Tolerance
+    pieces: Sequence[_Piece], shape: ToolShape, tolerance: Tolerance
 ) -> tuple[tuple[Literal["shank", "holder"], Body], ...]:
     bodies = []
     bottom = shape.height_mm
-    for name, diameter, length in _pieces(tool):
+    for name, diameter, length in pieces:
         radius = 0.5 * diameter - tolerance.clearance_mm
         if radius > 0.0:
             cylinder = ToolShape(disc_mm=radius, corner_radius_mm=0.0, height_mm=length)

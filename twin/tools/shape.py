@@ -127,6 +127,19 @@ class ToolShape:
             height_mm=self.height_mm + chord_mm,
         )
 
+    def inscribed(self, inset_mm: float) -> ToolShape | None:
+        """The shape that lies ``inset_mm`` inside this one, from ``inset_mm`` above its tip up to its top.
+
+        Returns:
+            None where the tool is too small for that.
+        """
+        corner = max(0.0, self.corner_radius_mm - inset_mm)
+        disc = self.disc_mm - max(0.0, inset_mm - self.corner_radius_mm)
+        height = self.height_mm - inset_mm
+        if disc < 0.0 or disc + corner <= 0.0 or height <= corner * (1.0 - math.sin(self.taper_rad)):
+            return None
+        return ToolShape(disc_mm=disc, corner_radius_mm=corner, taper_rad=self.taper_rad, height_mm=height)
+
     def radius_mm(self, z_mm: ArrayLike) -> FloatArray:
         """Radius r(z) at heights above the tip; heights are clipped to [0, height]."""
         z = np.clip(np.asarray(z_mm, dtype=np.float64), 0.0, self.height_mm)

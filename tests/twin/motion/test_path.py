@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from gcode.errors import Place
 from gcode.events import ArcMotion, Dwell, LinearMotion, MotionState, ToolChange
 from twin.motion.from_nc import moves_from_nc
 from twin.motion.path import Arc, Move
+from twin.motion.rapids import independent_legs
 
 PLACE = Place(file="t.nc", line=7)
 
@@ -123,3 +126,27 @@ def test_a_dwell_is_where_the_tool_is_also_before_any_motion_and_after_a_tool_ch
     first, second, _, third, fourth = moves(*dwells, rapid, *dwells)
     tips = [m.start_mm.tolist() for m in (first, second, third, fourth) if isinstance(m, Move)]
     assert tips == [[30.0, 10.0, 200.0], [30.0, 10.0, 120.0], [0.0, 0.0, 150.0], [0.0, 0.0, 70.0]]
+
+
+def test_axes_that_move_independently_arrive_one_after_another() -> None:
+    move = Move(
+        start_mm=np.array([0.0, 0.0, 50.0]),
+        end_mm=np.array([100.0, -40.0, 20.0]),
+        duration_s=1.0,
+        feed_mm_min=6000.0,
+        spindle_rpm=0.0,
+        tool=1,
+        rapid=True,
+        nc_line=3,
+    )
+    legs = list(independent_legs(move, np.array([6000.0, 6000.0, 2000.0])))
+    assert [leg.end_mm.tolist() for leg in legs] == [
+        pytest.approx([40.0, -40.0, 50.0 - 40.0 / 3.0]),
+        pytest.approx([90.0, -40.0, 20.0]),
+        [100.0, -40.0, 20.0],
+    ]
+    assert [leg.duration_s for leg in legs] == pytest.approx([0.4, 0.5, 0.1])
+    assert all(leg.feed_mm_min == pytest.approx(60.0 * leg.length_mm / leg.duration_s) for leg in legs)
+    assert [np.array_equal(a.end_mm, b.start_mm) for a, b in pairwise(legs)] == [True, True]
+    together = replace(move, end_mm=np.array([30.0, 30.0, 80.0]))
+    assert [leg.end_mm.tolist() for leg in independent_legs(together, np.full(3, 6000.0))] == [[30.0, 30.0, 80.0]]

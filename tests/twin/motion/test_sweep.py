@@ -108,3 +108,16 @@ def test_a_body_standing_over_the_tip_is_moved_up() -> None:
     left = np.ones(3, dtype=bool)
     SweptVolume([sweep]).clear(np.array([(0.0, 0.0, 9.0), (0.0, 1.0, 12.0), (0.0, 0.0, 16.0)]), left, 0.0)
     assert left.tolist() == [True, False, True]
+
+
+def test_what_a_motion_adds_beside_the_flat_bottom_of_its_start_is_cut() -> None:
+    body = Body.of(tool_shape("taper", 10.0, 22.0, taper_deg=15.0), chord_mm=0.002)
+    sweep = Sweep(body, np.array([4.902, 9.094, 0.0]), np.array([-0.453, 0.0, 0.0]))
+    one_plane = (0, -0.2, 0.4, 1, 0.002)
+    whole, added = sweep.strips(*one_plane), sweep.strips(*one_plane, start_is_cut=True)
+    u = np.linspace(9.7, 12.0, 24)
+    lo, lo_added = (np.interp(u, s.nodes[:, 0], s.nodes[:, 1]) for s in (whole, added))
+    start = Sweep(body, sweep.start_mm, sweep.start_mm).strips(*one_plane)
+    lo_start = np.interp(u, start.nodes[:, 0], start.nodes[:, 1])
+    assert np.max(lo_start - lo) > 0.4  # the motion adds this much below the section at its start
+    assert np.max(np.minimum(lo_start, lo_added) - lo) < 0.01
