@@ -51,8 +51,10 @@ def machined(
             tool = setup.tools.get(item.tool)
             if tool is not None and item.length_mm > 0.0 and setup.material.near(tool, *box_of(item)):
                 contacts = _cut(setup.material, tool, item, setup.tolerance.chord_mm, t_s)
-                name = str(job.program.file)
-                collisions += [collision_record(kind, found, item, name) for kind, found in contacts.found.items()]
+                collisions += (
+                    collision_record(kind, met, item, str(job.program.file), shank_assumed=tool.shank_assumed)
+                    for kind, met in contacts.found(setup.material.contact_mm3).items()
+                )
             t_s += item.duration_s
         setup.material.flush()
         return setup.material.workpiece, tuple(collisions)
