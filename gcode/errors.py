@@ -62,6 +62,7 @@ class GcodeError(Exception):
         self.code = code
         self.problem = problem
         self.expected = expected
+        self.hint = ""
         super().__init__(str(self))
 
     def __str__(self) -> str:
@@ -71,4 +72,5 @@ class GcodeError(Exception):
     def underlined(self) -> str:
         """The message with the block below it, a caret under the word, and the calls that led there."""
         calls = "".join(f"\n    in {call}" for call in reversed(self.place.calls))
-        return underlined(str(self), self.place.text, self.place.column) + harmless(calls)
+        hint = f"\n{harmless(self.hint)}" if self.hint else ""
+        return underlined(str(self), self.place.text, self.place.column) + harmless(calls) + hint

@@ -172,6 +172,12 @@ class Block:
     place: Place
 
 
+#: Codes of notices that are warnings: the control may do something else than the programmer meant.
+WARNINGS = frozenset(
+    {"auto-dialect", "build-option", "control-text", "g53-incremental", "last-of-group", "other-dialect", "radius-zero"}
+)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Notice:
     """A word that is understood and has no effect on motion here, reported so that nothing is skipped silently."""
@@ -179,6 +185,11 @@ class Notice:
     place: Place
     code: str
     text: str
+
+    @property
+    def is_warning(self) -> bool:
+        """True where the control may do something else than the programmer meant."""
+        return self.code in WARNINGS
 
 
 Motion: TypeAlias = LinearMotion | ArcMotion

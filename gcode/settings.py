@@ -75,13 +75,15 @@ class Limits:
 
     Attributes:
         blocks: blocks executed in all.
-        jumps: backward jumps executed in all (loops).
+        jumps: backward jumps executed in all: loops, and repeats of subprograms and macros.
+        idle_jumps: backward jumps executed one after another without a motion between them.
         nesting: depth of subprogram and macro calls.
         errors: number of errors after which a check stops.
     """
 
     blocks: int = 20_000_000
     jumps: int = 1_000_000
+    idle_jumps: int = 100_000
     nesting: int = 64
     errors: int = 200
 
@@ -114,6 +116,8 @@ class MachineSettings:
         decimal_point: numbers without a decimal point: ``calculator``: X100 is 100 mm; ``increment``: X100 is 100 least
             input increments (0.001 mm or 0.0001 inch each). FANUC: parameter 3401 bit 0.
         compensation_startup: type of start-up and cancel of FANUC's cutter compensation (parameter 5003 bits 0, 1).
+        m_codes: M codes of the machine builder by number, which the dialect does not have: ``none``, the code moves
+            nothing; each use is reported by a notice.
         limits: see `Limits`.
 
     Raises:
@@ -140,6 +144,7 @@ class MachineSettings:
     machine_units: Literal["mm", "inch"] = "mm"
     decimal_point: Literal["calculator", "increment"] = "calculator"
     compensation_startup: Literal["A", "B"] = "A"
+    m_codes: Mapping[int, Literal["none"]] = field(default_factory=dict)
     limits: Limits = Limits()
 
     def __post_init__(self) -> None:
@@ -150,6 +155,11 @@ class MachineSettings:
         if self.tools is not None:
             self._freeze("tools", {**self.tools})
         self._freeze("variables", {n: _length(f"variables[{n}]", v) for n, v in self.variables.items()})
+        for number, effect in self.m_codes.items():
+            if number < 0:
+                raise ValueError(f"m_codes: {number} is not the number of an M code")
+            _choice(f"m_codes[{number}]", effect, ("none",))
+        self._freeze("m_codes", {**self.m_codes})
         for name in ("shift_mm", "external_offset_mm", "home_mm", "start_mm"):
             object.__setattr__(self, name, _point(name, getattr(self, name)))
         object.__setattr__(self, "search_path", tuple(Path(folder) for folder in self.search_path))

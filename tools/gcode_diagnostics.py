@@ -31,6 +31,7 @@ ERRORS: Mapping[str, str] = {
     "bad-statement": "an incomplete statement of the macro language",
     "bad-value": "a value outside the range of its word",
     "bad-variable": "`#` without the number or name of a variable",
+    "builder-code": "an M code of the control that is declared in `m_codes`",
     "block-delete-place": "a slash inside a block",
     "block-number-place": "an N word after other words (LinuxCNC, GRBL)",
     "compensation-arc-entry": "compensation that begins with an arc (FANUC), or an arc that has no entry (LinuxCNC)",
@@ -66,7 +67,7 @@ ERRORS: Mapping[str, str] = {
     "foreign-control": "a program for another kind of control, or a file that is not a program",
     "further-axes": "writing: a motion of axes other than x, y and z",
     "g53-compensation": "G53 while cutter compensation is on",
-    "g53-incremental": "G53 with G91",
+    "g53-incremental": "G53 with G91 (LinuxCNC)",
     "g53-motion": "G53 while neither G0 nor G1 is active (LinuxCNC, GRBL)",
     "gap": "writing: a motion that does not start where the last one ended",
     "group-conflict": "two codes of one modal group in a block",
@@ -99,7 +100,8 @@ ERRORS: Mapping[str, str] = {
     "reference-missed": "G27 does not end at the reference point",
     "repeated-word": "a letter used twice in a block",
     "return-place": "M99 in an O-word subroutine",
-    "runaway": "more blocks executed than `limits.blocks`, or more backward jumps than `limits.jumps`",
+    "runaway": "more blocks executed than `limits.blocks`, more backward jumps or repeats than `limits.jumps`, or more "
+    "of them than `limits.idle_jumps` without a motion",
     "scaling-two": "G51 with P together with I, J, K",
     "settings-key": "an unknown key of a settings file",
     "settings-syntax": "a settings file that is not TOML",
@@ -142,12 +144,21 @@ ERRORS: Mapping[str, str] = {
 
 #: Meaning of each `Notice.code`.
 NOTICES: Mapping[str, str] = {
+    "assumed-zero": "a counter of the control that counts as 0 (Haas)",
+    "auto-dialect": "warning: the dialect that the program fits best, and why (dialect `auto`)",
     "block-deleted": "block delete is on: the block is skipped",
+    "build-option": "warning: a code that only controllers built with an option have (GRBL)",
     "compensation-look-ahead": "more than two blocks without motion: the corner is not compensated (FANUC, Haas)",
+    "control-text": "warning: text that the controller refuses and a sender takes out (GRBL)",
     "data-entry": "a block between G10 L3 or L50 and G11 is data, and is not executed",
+    "g53-incremental": "warning: G53 with G91 (FANUC ignores the block; Haas and GRBL move to machine coordinates)",
+    "last-of-group": "warning: of two codes of a modal group the last one counts (FANUC)",
     "leader": "lines before the first % are a leader, and are not executed",
     "no-motion": "a word that is understood but causes no motion",
     "no-program-end": "the program ends without M2, M30 or %",
     "no-tool-table": "no tool table is given: the length or radius is 0",
+    "other-dialect": "warning: the program looks like one in another dialect",
+    "radius-zero": "warning: cutter compensation without D, and none before: the radius is 0 (FANUC, Haas)",
     "round": "M99 would restart the main program; one pass is run",
+    "still-axis": "a word of a rotary or parallel axis that stays at 0 (FANUC, Haas)",
 }

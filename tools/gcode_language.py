@@ -14,7 +14,7 @@ from gcode.compensation.fanuc import BLOCKS_READ_OVER
 from gcode.control import variables
 from gcode.cycles.hole import MOST_STEPS
 from gcode.cycles.rules import DwellUnit
-from gcode.dialects import ArcTolerance, DwellWord
+from gcode.dialects import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.macro_language import FANUC_MACRO, LINUXCNC_MACRO, MacroLanguage
 from gcode.flow import owords
 from gcode.flow import tape_leader as leader
@@ -22,7 +22,7 @@ from gcode.flow.system_variables import _CONSTANTS as CONSTANTS
 from gcode.flow.system_variables import _NAMED as NAMED
 from gcode.language import block_parser, program
 from gcode.language.expressions import MAX_DEPTH, EvaluationError, Source, parse_operand
-from gcode.phases import splines
+from gcode.phases import arcs, splines
 from gcode.settings import ADDITIONAL_OFFSETS, Limits, MachineSettings, ToolOffset
 from gcode.tables.text_file import LARGEST_BYTES
 
@@ -148,8 +148,28 @@ def field_table(kind: type, values: Mapping[str, Any], *, without: Sequence[str]
     return table(("field", "meaning", *values), rows)
 
 
+def source_table(dialect: Dialect, sources: Mapping[str, str], unknown: str, *, without: Sequence[str]) -> str:
+    """Each rule of a dialect with its value and its source.
+
+    Args:
+        dialect: the dialect.
+        sources: of its fields, by name.
+        unknown: the text for a field without one.
+        without: fields that are shown elsewhere.
+    """
+    texts = field_texts(Dialect)
+    names = [field.name for field in dataclasses.fields(Dialect) if field.name not in without]
+    rows = ((texts[name], _shown_field(name, getattr(dialect, name)), sources.get(name, unknown)) for name in names)
+    return table(("rule", "value", "source"), rows)
+
+
 def _shown_field(name: str, value: Any) -> str:
-    return _ranges(value) if name == "tool_variables" else shown(value)
+    if name == "second_variable_names":
+        texts = (f"#{first}–#{first + count - 1}: #{same}–#{same + count - 1}" for first, count, same in value)
+        return ", ".join(texts) or "none"
+    if name == "further_variables":
+        return ", ".join(f"#{numbers[0]}–#{numbers[-1]}" for numbers in value) or "none"
+    return _ranges(value) if name in ("tool_variables", "counters") else shown(value)
 
 
 def settings_table() -> str:
@@ -190,10 +210,11 @@ def shown(value: Any) -> str:
 
 
 def _tolerance(value: ArcTolerance) -> str:
-    text = f"{value.absolute_mm:.6g} mm"
+    text = str(value)
     if value.absolute_inch_mm is not None:
-        text += f" (G20: {value.absolute_inch_mm / 25.4:.6g} inch)"
-    return text + (f", or {value.relative:g} of the radius up to {value.most:g} times that" if value.relative else "")
+        inch = value.absolute_inch_mm / 25.4
+        text += f"; G20: {inch:.6g} inch, or the same share up to {value.most * inch:.6g} inch"
+    return text
 
 
 def _dwell_unit(value: DwellUnit) -> str:
@@ -222,6 +243,8 @@ def limits() -> str:
     rows = (
         ("blocks executed", f"{given.blocks:,}", "setting `limits.blocks`"),
         ("jumps back (loops)", f"{given.jumps:,}", "setting `limits.jumps`"),
+        ("jumps back without a motion between them", f"{given.idle_jumps:,}", "setting `limits.idle_jumps`"),
+        ("turns of one arc", f"{arcs.MOST_TURNS:,}", "LinuxCNC"),
         ("call depth", str(given.nesting), "setting `limits.nesting`"),
         ("errors that `check` collects", str(given.errors), "setting `limits.errors`"),
         ("size of a program file", f"{program.MAX_BYTES // 2**20:,} MiB", ""),

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from gcode_diagnostics import ERRORS, NOTICES
-from gcode_language import field_table, functions, limits, named_parameters, operators, settings_table
+from gcode_language import field_table, functions, limits, named_parameters, operators, settings_table, source_table
 from gcode_markdown import code, table
 from gcode_variables import described
 from gcode_words import LETTERS, PHASES, WORD_PHASES, letter_status
@@ -23,6 +23,7 @@ from gcode.cycles import CycleRules
 from gcode.cycles.rules import Act, Cycle
 from gcode.dialects import DIALECTS, Dialect
 from gcode.dialects.codes import CodeRule, Status
+from gcode.dialects.sources import NO_SOURCE, SOURCES
 from gcode.language.foreign import RULES
 from gcode.phases.g10 import _TAKES as DATA_WORDS
 
@@ -187,9 +188,17 @@ def _variables(name: str) -> Callable[[], str]:
     return section
 
 
+#: Fields of `Dialect` that other parts of the page show.
+ELSEWHERE = ("name", "codes", "order", "macro", "cycles", "data_kinds", "refused_letters", "free_letters")
+
+
 def _dialect_fields() -> str:
-    elsewhere = ("name", "codes", "order", "macro", "cycles", "data_kinds", "refused_letters", "free_letters")
-    return field_table(Dialect, DIALECTS, without=elsewhere)
+    return field_table(Dialect, DIALECTS, without=ELSEWHERE)
+
+
+def _rules(name: str) -> Callable[[], str]:
+    """Rule, value and source of every field of a dialect."""
+    return lambda: source_table(DIALECTS[name], SOURCES[name], NO_SOURCE, without=ELSEWHERE)
 
 
 def _meanings(meanings: Mapping[str, str]) -> Callable[[], str]:
@@ -212,9 +221,11 @@ SECTIONS: Mapping[str, Callable[[], str]] = {
     "operators": operators,
     "functions": functions,
     "fanuc-variables": _variables("fanuc"),
+    "haas-variables": _variables("haas"),
     "linuxcnc-variables": _variables("linuxcnc"),
     "named-parameters": named_parameters,
     "dialects": _dialect_fields,
+    **{f"{name}-rules": _rules(name) for name in _NAMES},
     "settings": settings_table,
     "errors": _meanings(ERRORS),
     "notices": _meanings(NOTICES),

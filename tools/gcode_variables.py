@@ -84,6 +84,30 @@ FANUC_ROWS = (
     ),
     _row("additional work offsets G54.1 P1 to P300", (14001, 14003), step=20, count=300),
 )
+#: Variables that Haas has and FANUC has not.
+HAAS_ROWS = (
+    *(
+        _row(f"the same as {same}", (first, last))
+        for first, last, same in (
+            (10100, 10199, "#100–#199"),
+            (10500, 10599, "#500–#599"),
+            (10600, 10699, "#600–#699"),
+            (10800, 10999, "#800–#999"),
+        )
+    ),
+    _row("further common variables", (10000, 10099), (10200, 10499), (10700, 10799)),
+    _row("number of flutes, and largest vibration, of tools 1 to 200; counts as 0", (1601, 2000)),
+    _row("radius of tool offsets 1 to 200, and its wear", (2401, 2800)),
+    _row("timers of the machine; count as 0", (3020, 3025)),
+    _row("measured diameters, and positions of the coolant spigot, of tools 1 to 200; count as 0", (3201, 3600)),
+    _row("counts of M30; count as 0", (3901, 3902)),
+    _row("feed timers of tools 1 to 100; count as 0", (5401, 5500)),
+    _row("total timers of tools 1 to 100; count as 0", (5501, 5600)),
+    _row("limits and counters of the tool life monitor; count as 0", (5601, 5800)),
+    _row("largest loads of tools, and limits of the tool load monitor; count as 0", (5801, 6000)),
+)
+#: Variables that FANUC has and Haas has not.
+_NOT_HAAS = (range(11001, 11401), range(12001, 12401), range(13001, 13401), range(10001, 10401))
 _LINUXCNC_KNOWN = (
     _row("arguments and local variables of a subroutine", (1, 30)),
     _row("free for the program", (31, 5000)),
@@ -148,7 +172,11 @@ def rows_of(dialect: Dialect) -> tuple[Row, ...]:
     """The rows of a dialect's macro language, none where it has no variables."""
     if not dialect.macro.operators:
         return ()
-    return FANUC_ROWS if dialect.macro.vacant else LINUXCNC_ROWS
+    if not dialect.macro.vacant:
+        return LINUXCNC_ROWS
+    if not dialect.counters:
+        return FANUC_ROWS
+    return (*(row for row in FANUC_ROWS if not any(min(row.numbers) in numbers for numbers in _NOT_HAAS)), *HAAS_ROWS)
 
 
 def described(dialect: Dialect) -> Iterator[tuple[Row, Access]]:

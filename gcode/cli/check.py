@@ -51,11 +51,12 @@ def _print_text(found: Findings, notices: bool) -> None:
 
     for error in found.errors:
         say(f"{error.underlined()}\n")
-    if notices:
-        for group in found.grouped():
-            say(group)
+    for group in found.grouped(notices=notices):
+        say(group)
     count = plural(len(found.errors), "error")
-    more = f", {plural(len(found.notices), 'notice')}" if found.notices else ""
+    warnings = len(found.warnings)
+    kinds = ((warnings, "warning"), (len(found.notices) - warnings, "notice"))
+    more = "".join(f", {plural(number, kind)}" for number, kind in kinds if number)
     say(f"{found.file}: {count}{more}", colour=typer.colors.RED if found.errors else typer.colors.GREEN)
 
 

@@ -77,7 +77,8 @@ def carry_out(app: typer.Typer, arguments: Sequence[str], name: str) -> int:
     except _UsageError as error:
         context = getattr(error, "ctx", None)
         command = name if context is None else context.command_path
-        fail(f"{str(error.format_message()).rstrip('.')}; see '{command} --help'")  # type: ignore[attr-defined]
+        message = str(error.format_message()).rstrip(".").replace(": Value error, ", ": ")  # type: ignore[attr-defined]
+        fail(f"{message}; see '{command} --help'")
         return exit_codes.USAGE
     except typer.Abort:
         return exit_codes.SIGNAL + signal.SIGINT

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,9 +9,9 @@ from typing import Any
 
 from gcode.cli.machine_options import Setup
 from gcode.errors import GcodeError, Place
-from gcode.events import Notice
-from gcode.flow.interpreter import check, run
-from gcode.language.program import Program, read_program
+from gcode.events import WARNINGS, Notice
+from gcode.flow.interpreter import examine
+from gcode.language.program import read_program
 from gcode.report.motion_json import call_objects
 
 #: Most lines that are listed for notices of equal text.
@@ -39,7 +38,7 @@ class Findings:
         """The findings as JSON objects, errors first.
 
         Args:
-            notices: include notices.
+            notices: include all notices, else warnings only.
         """
         for error in self.errors:
             yield {
@@ -50,9 +49,9 @@ class Findings:
                 "expected": error.expected,
                 **_text_and_calls(error.place),
             }
-        for notice in self.notices if notices else ():
+        for notice in self.notices if notices else self.warnings:
             yield {
-                "severity": "notice",
+                "severity": "warning" if notice.is_warning else "notice",
                 **_place(notice.place),
                 "code": notice.code,
                 "problem": notice.text,
@@ -60,15 +59,21 @@ class Findings:
                 **_text_and_calls(notice.place),
             }
 
-    def grouped(self) -> Iterator[str]:
-        """The notices, those of equal text as one, with their lines."""
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """The notices that are warnings."""
+        return tuple(notice for notice in self.notices if notice.is_warning)
+
+    def grouped(self, *, notices: bool) -> Iterator[str]:
+        """The notices, or the warnings only, those of equal text as one, with their lines."""
         groups: dict[tuple[str, str, str], dict[int, None]] = {}
-        for notice in self.notices:
+        for notice in self.notices if notices else self.warnings:
             groups.setdefault((notice.place.file, notice.code, notice.text), {})[notice.place.line] = None
         for (file, code, text), lines in groups.items():
             named = ", ".join(str(line) for line in list(lines)[:_MOST_LINES])
             more = f" and {len(lines) - _MOST_LINES} more" if len(lines) > _MOST_LINES else ""
-            yield f"{file}: {text} [{code}], line{'s' if len(lines) > 1 else ''} {named}{more}"
+            kind = "warning: " if code in WARNINGS else ""
+            yield f"{file}: {kind}{text} [{code}], line{'s' if len(lines) > 1 else ''} {named}{more}"
 
 
 def findings(file: Path, setup: Setup) -> Findings:
@@ -77,16 +82,8 @@ def findings(file: Path, setup: Setup) -> Findings:
         program = read_program(file)
     except GcodeError as error:
         return Findings(file=str(file), unreadable=str(error))
-    errors = check(program, dialect=setup.dialect, settings=setup.settings)
-    return Findings(file=str(file), errors=tuple(errors), notices=tuple(_notices(program, setup)))
-
-
-def _notices(program: Program, setup: Setup) -> Iterator[Notice]:
-    """The notices of a program up to its first error."""
-    with contextlib.suppress(GcodeError):
-        for event in run(program, dialect=setup.dialect, settings=setup.settings):
-            if isinstance(event, Notice):
-                yield event
+    errors, notices = examine(program, dialect=setup.dialect, settings=setup.settings)
+    return Findings(file=str(file), errors=tuple(errors), notices=tuple(notices))
 
 
 def _place(place: Place) -> dict[str, Any]:

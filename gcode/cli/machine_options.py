@@ -33,6 +33,16 @@ class DialectName(StrEnum):
     GRBL = "grbl"
 
 
+class ProgramDialect(StrEnum):
+    """Controls that a program is written for: one of `DialectName`, or the likeliest of them."""
+
+    FANUC = "fanuc"
+    HAAS = "haas"
+    LINUXCNC = "linuxcnc"
+    GRBL = "grbl"
+    AUTO = "auto"
+
+
 class MachineUnit(StrEnum):
     """Unit of length of a machine."""
 
@@ -44,7 +54,10 @@ ProgramFile = Annotated[
     Path,
     typer.Argument(metavar="FILE", help="NC program.", show_default=False),
 ]
-DialectOption = Annotated[DialectName, typer.Option("--dialect", "-d", help="Control that the program is written for.")]
+DialectOption = Annotated[
+    ProgramDialect,
+    typer.Option("--dialect", "-d", help="Control that the program is written for; auto takes the likeliest."),
+]
 ToolTableOption = Annotated[
     Path | None,
     typer.Option(
@@ -68,7 +81,8 @@ UnitOption = Annotated[
     MachineUnit | None,
     typer.Option(
         "--machine-units",
-        help="Unit of .tbl and .var files; default: `units` of the settings, or mm.",
+        help="Unit of .tbl and .var files, and of the machine's offset variables; default: `machine_units` of the "
+        "settings, or mm.",
         show_default=False,
     ),
 ]
@@ -86,13 +100,54 @@ SearchPathOption = Annotated[
     ),
 ]
 
+ToolOption = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", min=0, help="Tool in the spindle when the program starts, 0 for none.", show_default=False
+    ),
+]
+MCodeOption = Annotated[
+    list[int] | None,
+    typer.Option(
+        metavar="N",
+        min=0,
+        help="Number of an M code of the machine builder that moves nothing; may be repeated. Each use is a notice.",
+        show_default=False,
+    ),
+]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setup:
-    """Dialect and machine settings, from the options."""
+    """Dialect and machine settings, from the options.
 
-    dialect: Dialect
+    Attributes:
+        dialect: the control; ``auto`` for the one that the program fits best.
+        settings: the machine.
+    """
+
+    dialect: Dialect | str
     settings: MachineSettings
+
+    @property
+    def control(self) -> Dialect:
+        """The dialect, once it is known."""
+        from gcode.dialects import dialect_named
+
+        return dialect_named(self.dialect) if isinstance(self.dialect, str) else self.dialect
+
+    def for_program(self, file: Path | None) -> Setup:
+        """The setup for one program: with its dialect, where that is to be found; which, and why, is printed."""
+        if file is None or not isinstance(self.dialect, str):
+            return self
+        from gcode.cli.console import say
+        from gcode.flow.interpreter import taken_dialect
+        from gcode.language.program import read_program
+
+        dialect, notice = taken_dialect(read_program(file), self.dialect)
+        if notice is not None:
+            say(f"{file}: {notice.text}", error=True)
+        return replace(self, dialect=dialect)
 
 
 def with_machine(command: Callable[..., None]) -> Callable[..., None]:
@@ -107,7 +162,7 @@ def with_machine(command: Callable[..., None]) -> Callable[..., None]:
     def with_options(**values: Any) -> None:
         setup = setup_of(**{name: values.pop(name) for name in shared})
         with closed_pipe_ends():
-            command(**values, setup=setup)
+            command(**values, setup=setup.for_program(values.get("file")))
             sys.stdout.flush()
 
     options = {name: p for name, p in (own | shared).items() if name != "setup"}
@@ -119,35 +174,41 @@ def with_machine(command: Callable[..., None]) -> Callable[..., None]:
 
 def setup_of(
     *,
-    dialect: DialectOption = DialectName.FANUC,
+    dialect: DialectOption = ProgramDialect.FANUC,
     tool_table: ToolTableOption = None,
     parameters: ParametersOption = None,
     settings: SettingsOption = None,
     machine_units: UnitOption = None,
     block_delete: BlockDeleteOption = False,
     search_path: SearchPathOption = None,
+    tool: ToolOption = None,
+    m_code: MCodeOption = None,
 ) -> Setup:
     """Dialect and settings from the options; the tool table and the parameter file override the settings file.
 
     Raises:
         UnusableFileError: for a file with an error, naming it.
     """
-    from gcode.dialects import dialect_named
+    from gcode.dialects import AUTO, dialect_named
     from gcode.settings import MachineSettings
     from gcode.tables import read_parameters, read_settings, read_tool_table
 
     made = _read(lambda: read_settings(settings)) if settings is not None else MachineSettings()
-    units = machine_units.value if machine_units is not None else made.units
+    units = machine_units.value if machine_units is not None else made.machine_units
     if parameters is not None:
         made = _read(lambda: read_parameters(parameters, units)).applied_to(made)
     if tool_table is not None:
         made = replace(made, tools=_read(lambda: read_tool_table(tool_table, units)))
     made = replace(
         made,
+        machine_units=units,
+        tool=made.tool if tool is None else tool,
+        m_codes={**made.m_codes, **dict.fromkeys(m_code or (), "none")},
         block_delete=made.block_delete or block_delete,
         search_path=(*made.search_path, *(search_path or ())),
     )
-    return Setup(dialect=dialect_named(dialect.value), settings=made)
+    taken = AUTO if dialect is ProgramDialect.AUTO else dialect_named(dialect.value)
+    return Setup(dialect=taken, settings=made)
 
 
 def _read(read: Callable[[], _T]) -> _T:

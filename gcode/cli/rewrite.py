@@ -77,7 +77,7 @@ def rewrite(
 
     try:
         options = WriteOptions(
-            dialect=setup.dialect if to is None else dialect_named(to.value),
+            dialect=setup.control if to is None else dialect_named(to.value),
             units=units.value,
             distance=distance.value,
             arcs=arcs.value,

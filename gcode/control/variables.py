@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from gcode.dialects.macro_language import MacroLanguage
+from gcode.dialects import Dialect
 from gcode.language.expressions import EvaluationError, Scope, Variable, variable_number
 
 #: Common variables of FANUC: volatile and kept ones.
@@ -35,7 +35,7 @@ class Variables:
     """Values of variables while a program runs; implements `Scope`.
 
     Args:
-        language: whose rules hold.
+        dialect: whose rules hold.
         control: the variables that are not the program's own.
         initial: values at the start.
         steps: least input increments of an address that make one unit, 0 where its numbers are not rounded.
@@ -43,23 +43,33 @@ class Variables:
 
     def __init__(
         self,
-        language: MacroLanguage,
+        dialect: Dialect,
         *,
         control: ControlVariables,
         initial: Mapping[int, float],
         steps: Callable[[str], int],
     ) -> None:
+        language = dialect.macro
         self._language = language
+        self._second_names = dialect.second_variable_names
         self._control = control
         self._steps = steps
-        self._own = _COMMON if language.vacant else (_GLOBALS,)
-        self._common: dict[int, float] = {n: v for n, v in initial.items() if self._is_common(n)}
+        self._own = (*_COMMON, *dialect.further_variables) if language.vacant else (_GLOBALS,)
+        named = {self._first_name(n): v for n, v in initial.items()}
+        self._common: dict[int, float] = {n: v for n, v in named.items() if self._is_common(n)}
         self._locals: list[dict[int, float]] = [{n: v for n, v in initial.items() if 0 < n <= language.locals}]
         self._names: list[dict[str, float]] = [{}]
         self._global_names: dict[str, float] = {}
 
     def _is_common(self, index: int) -> bool:
         return any(index in numbers for numbers in self._own)
+
+    def _first_name(self, index: int) -> int:
+        """The number of a variable that has two of them."""
+        for first, count, same in self._second_names:
+            if first <= index < first + count:
+                return same + index - first
+        return index
 
     def push(self, arguments: Mapping[int, float]) -> None:
         """Begins a level with locals of its own."""
@@ -84,6 +94,8 @@ class Variables:
         missing = None if self._language.vacant else 0.0
         if 0 < index <= self._language.locals:
             return self._locals[-1].get(index, missing)
+        if self._second_names:
+            index = self._first_name(index)
         if self._is_common(index):
             return self._common.get(index, missing)
         if index == 0 and self._language.vacant:
@@ -149,6 +161,8 @@ class Variables:
 
     def set_number(self, index: int, value: float | None) -> None:
         """Sets #index; None makes it vacant."""
+        if self._second_names:
+            index = self._first_name(index)
         if 0 < index <= self._language.locals:
             table = self._locals[-1]
         elif self._is_common(index):

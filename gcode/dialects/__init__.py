@@ -11,8 +11,21 @@ from gcode.dialects.grbl import GRBL
 from gcode.dialects.haas import HAAS
 from gcode.dialects.linuxcnc import LINUXCNC
 
-__all__ = ["DIALECTS", "FANUC", "GRBL", "HAAS", "LINUXCNC", "ArcTolerance", "Dialect", "DwellWord", "dialect_named"]
+__all__ = [
+    "AUTO",
+    "DIALECTS",
+    "FANUC",
+    "GRBL",
+    "HAAS",
+    "LINUXCNC",
+    "ArcTolerance",
+    "Dialect",
+    "DwellWord",
+    "dialect_named",
+]
 
+#: Stands for the dialect that a program fits best.
+AUTO = "auto"
 DIALECTS: Mapping[str, Dialect] = MappingProxyType({d.name: d for d in (FANUC, HAAS, LINUXCNC, GRBL)})
 
 

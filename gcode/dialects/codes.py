@@ -36,6 +36,7 @@ class CodeRule:
         needs: letters of the words that must be in the same block.
         takes_axes: True where its axis words are its own, so that the block has no motion besides.
         meaning: its meaning in words, for messages and reference tables.
+        option: the option with which the control must have been built to have it, empty where all have it.
     """
 
     code: str
@@ -46,6 +47,7 @@ class CodeRule:
     takes_axes: bool
     meaning: str
     needs: str = ""
+    option: str = ""
 
 
 Table: TypeAlias = Mapping[str, CodeRule]
@@ -60,6 +62,7 @@ def rules(
     letters: str = "",
     takes_axes: bool = False,
     needs: str = "",
+    option: str = "",
 ) -> dict[str, CodeRule]:
     """Rows of a table that share everything but code and meaning; `groups` are names with blanks between."""
     return {
@@ -72,14 +75,17 @@ def rules(
             takes_axes=takes_axes,
             meaning=meaning,
             needs=needs,
+            option=option,
         )
         for code, meaning in meanings.items()
     }
 
 
-def executed(groups: str, phase: str, meanings: Mapping[str, str], letters: str = "") -> dict[str, CodeRule]:
+def executed(
+    groups: str, phase: str, meanings: Mapping[str, str], letters: str = "", option: str = ""
+) -> dict[str, CodeRule]:
     """Rows of codes that `phase` executes."""
-    return rules(groups, Status.EXECUTED, meanings, phase=phase, letters=letters)
+    return rules(groups, Status.EXECUTED, meanings, phase=phase, letters=letters, option=option)
 
 
 def owning(groups: str, phase: str, meanings: Mapping[str, str], letters: str) -> dict[str, CodeRule]:
@@ -92,9 +98,11 @@ def neutral(groups: str, meanings: Mapping[str, str], letters: str = "") -> dict
     return rules(groups, Status.NEUTRAL, meanings, letters=letters)
 
 
-def noticed(groups: str, meanings: Mapping[str, str], letters: str = "", needs: str = "") -> dict[str, CodeRule]:
+def noticed(
+    groups: str, meanings: Mapping[str, str], letters: str = "", needs: str = "", option: str = ""
+) -> dict[str, CodeRule]:
     """Rows of codes that have no motion."""
-    return rules(groups, Status.NOTICE, meanings, phase="notice", letters=letters, needs=needs)
+    return rules(groups, Status.NOTICE, meanings, phase="notice", letters=letters, needs=needs, option=option)
 
 
 def refused(groups: str, meanings: Mapping[str, str]) -> dict[str, CodeRule]:

@@ -25,12 +25,14 @@ class ArcTolerance:
         absolute_inch_mm: the same in inch programs (G20), in mm; None for `absolute_mm`.
         relative: a larger difference is accepted up to this fraction of the larger radius...
         most: ...and up to this many times `absolute_mm`.
+        of_start_radius: `relative` is a fraction of the radius at the arc's start instead.
     """
 
     absolute_mm: float
     absolute_inch_mm: float | None = None
     relative: float = 0.0
     most: float = 1.0
+    of_start_radius: bool = False
 
     def in_unit(self, unit_mm: float) -> ArcTolerance:
         """The tolerance for a program in a unit of `unit_mm`."""
@@ -41,8 +43,15 @@ class ArcTolerance:
     def accepts(self, start_radius_mm: float, end_radius_mm: float) -> bool:
         """True where an arc from one radius to the other is run."""
         difference = abs(start_radius_mm - end_radius_mm)
-        relative = self.relative * max(start_radius_mm, end_radius_mm)
-        return difference <= max(self.absolute_mm, min(relative, self.most * self.absolute_mm))
+        radius = start_radius_mm if self.of_start_radius else max(start_radius_mm, end_radius_mm)
+        return difference <= max(self.absolute_mm, min(self.relative * radius, self.most * self.absolute_mm))
+
+    def __str__(self) -> str:
+        """The rule in words, for messages and reference tables."""
+        if not self.relative:
+            return f"{self.absolute_mm:.6g} mm"
+        share = f"{100.0 * self.relative:g} % of the radius{' at the start' if self.of_start_radius else ''}"
+        return f"{self.absolute_mm:.6g} mm, or {share} up to {self.most * self.absolute_mm:.6g} mm"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,10 +106,16 @@ class Dialect:
         incremental_adds_length: with G91, the first Z word after a change of length offset also moves by that change.
         one_shot_with_motion: G0 to G3 in a block with G28 only sets the motion mode; else such a block is refused.
         machine_moves_rapid: G53 always moves at rapid; else it follows G0 or G1, one of which must be active.
+        machine_move_incremental: G53 while G91 is active: ``absolute``, it takes machine coordinates all the same;
+            ``ignored``, the block does not move; or ``refused``.
         reference_all_axes: G28 without axis words returns all axes; else it is refused.
         reference_cancels_length: G28 and G30 cancel the tool length offset.
         additional_offsets: number of additional work offsets.
         tool_variables: system variables of the columns of the tool offset table.
+        second_variable_names: common variables that have a second number: its first, how many, and the first number
+            of the common variables that they are.
+        further_variables: numbers of further common variables.
+        counters: system variables that count what a simulation does not, so that they are 0: first, how many, meaning.
         common_shift_variables: meaning of #5201 and following: ``external`` work offset, or ``local`` shift of G52.
         first_alarm: added to the value of #3000 to give the alarm number.
         helix_feed_along_arc: F of a helix is the feed along its arc in the plane; else along the helix.
@@ -110,6 +125,16 @@ class Dialect:
         leader: text before the first percent sign is a leader and is skipped.
         arc_tolerance: largest difference of the radii at the two ends of an arc with I, J, K.
         radius_tolerance_mm: largest amount by which R may be shorter than half the chord.
+        centre_words_of_plane: a centre word (I, J, K) of another plane is refused in an arc; else it is ignored.
+        needs_axis_words: an arc must name an axis of its plane, and G10 and G92 an axis.
+        same_group: two G codes of one modal group in a block: ``refused``, or the ``last`` one counts.
+        still_axes: letters of unsupported axes whose words are accepted while they stay at 0.
+        tool_word_changes: T puts the tool into the spindle, without M6.
+        senders_text: letters and signs that the control refuses and that the program which sends it lines takes out.
+        dollar_commands: lines that begin with $ are commands to the controller, which no other control has.
+        most_characters: characters that a block may have without blanks and comments, None for `MAX_LINE`.
+        largest_tool: largest number of a T word, None for no limit.
+        largest_block_number: largest number of an N word, None for no limit.
     """
 
     name: str
@@ -144,10 +169,14 @@ class Dialect:
     incremental_adds_length: bool
     one_shot_with_motion: bool
     machine_moves_rapid: bool
+    machine_move_incremental: Literal["absolute", "ignored", "refused"]
     reference_all_axes: bool
     reference_cancels_length: bool
     additional_offsets: int
     tool_variables: tuple[tuple[int, int, str], ...]
+    second_variable_names: tuple[tuple[int, int, int], ...]
+    further_variables: tuple[range, ...]
+    counters: tuple[tuple[int, int, str], ...]
     common_shift_variables: Literal["external", "local"]
     first_alarm: int
     helix_feed_along_arc: bool
@@ -156,6 +185,16 @@ class Dialect:
     leader: bool
     arc_tolerance: ArcTolerance
     radius_tolerance_mm: float
+    centre_words_of_plane: bool
+    needs_axis_words: bool
+    same_group: Literal["refused", "last"]
+    still_axes: str
+    tool_word_changes: bool
+    senders_text: str
+    dollar_commands: bool
+    most_characters: int | None
+    largest_tool: int | None
+    largest_block_number: int | None
 
     def __post_init__(self) -> None:
         for name in ("codes", "refused_letters", "dwell", "data_kinds"):

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from gcode.cycles import FANUC_CYCLES
 from gcode.dialects.codes import COMMON, Table, cycle_meanings, executed, neutral, noticed, owning, refused
+from gcode.dialects.dialect import ArcTolerance
 from gcode.dialects.linuxcnc import LINUXCNC
 from gcode.dialects.macro_language import NO_MACRO
 
@@ -19,8 +20,12 @@ CODES: Table = {
     **executed("one-shot", "shift", {"G92.1": "cancel the G92 offset and clear it"}),
     **owning("length", "length", {"G43.1": "dynamic tool length offset"}, "Z"),
     **neutral("compensation", {"G40": "cutter compensation cancel"}),
+    **owning("length", "length", {"G49": "tool length offset cancel"}, ""),
+    **executed("coolant", "coolant_on", {"M8": "flood coolant"}),
+    **executed("coolant", "coolant_on", {"M7": "mist coolant"}, option="ENABLE_M7"),
+    **executed("coolant", "coolant_off", {"M9": "coolant off"}),
     **noticed("path", {"G61": "exact path"}),
-    **noticed("override", {"M56": "parking motion override"}, "P"),
+    **noticed("override", {"M56": "parking motion override"}, "P", option="ENABLE_PARKING_OVERRIDE_CONTROL"),
     **refused("motion", {f"G38.{n}": "probing: its end depends on a measurement" for n in (2, 3, 4, 5)}),
     **refused("motion", cycle_meanings(FANUC_CYCLES)),
     **refused("tool-change", {"M6": "tool change"}),
@@ -37,8 +42,23 @@ GRBL = replace(
     tools_must_be_known=False,
     macro=NO_MACRO,
     cycles=None,
+    order=(
+        *("feed_mode", "modes", "feed", "speed", "tool", "spindle_on", "spindle_off", "coolant_on", "coolant_off"),
+        *("notice", "dwell", "length", "work_offset", "data", "reference", "shift", "motion", "stop"),
+    ),
     data_kinds={2: "zero", 20: "zero-here"},
     subprograms=False,
     length_moves_all_axes=False,
     shift_is_rotated=False,
+    machine_move_incremental="absolute",
+    arc_tolerance=ArcTolerance(absolute_mm=0.005, relative=0.001, most=100.0, of_start_radius=True),
+    radius_tolerance_mm=0.0,
+    centre_words_of_plane=False,
+    needs_axis_words=True,
+    tool_word_changes=True,
+    senders_text="O%",
+    dollar_commands=True,
+    most_characters=79,
+    largest_tool=255,
+    largest_block_number=10_000_000,
 )

@@ -23,6 +23,8 @@ _MOST_OMITTED = 50
 
 def recovered(state: State, block: ParsedBlock, error: GcodeError) -> State:
     """The state to continue from after `error` refused `block`; `state` is that before the block."""
+    if error.code == "runaway":
+        return replace(state, ended=True)
     if error.code == "missing-feed":
         state = state.with_modes(feed=_ASSUMED_FEED)
     command = _without_refused_words(state, block)

@@ -197,7 +197,9 @@ class Runner:
                 moved = moved or isinstance(event, LinearMotion | ArcMotion)
                 yield event
         if before.waiting is not None or session.state.waiting is not None:  # others' motions were among the events
-            return not same_position(before.position_mm, session.state.position_mm)
+            moved = not same_position(before.position_mm, session.state.position_mm)
+        if moved:
+            session.jumps_at_motion = session.jumps
         return moved
 
     def _plain(self) -> PlainBatch | None:
@@ -223,6 +225,7 @@ class Runner:
         session.count_blocks(line, run.lines)
         level.spot = Spot(run.offset, line + run.lines)
         level.fresh = False
+        session.jumps_at_motion = session.jumps
         session.place = _last_place(level, run)
         motion = "G0" if run.rapid_after else "G1"
         session.state = replace(state, position_mm=run.position_mm, started=True)

@@ -14,7 +14,7 @@ from gcode.events import Event
 from gcode.flow.call_stack import Level
 from gcode.flow.library import Library
 from gcode.language.block_parser import parse_blocks
-from gcode.language.blocks import ParsedBlock
+from gcode.language.blocks import ParsedBlock, Word
 from gcode.language.program import Program, Spot
 from gcode.settings import MachineSettings
 
@@ -52,6 +52,8 @@ class Session:
         line_offset: byte offset of that line.
         blocks: blocks executed so far.
         jumps: jumps back made so far.
+        jumps_at_motion: the same when the program last moved.
+        assumed: control variables whose value was assumed to be 0, each reported once.
     """
 
     def __init__(
@@ -66,7 +68,7 @@ class Session:
         self.state: State = initial_state(dialect, settings)
         self.levels = [Level(program=program, spot=Spot(0, 1))]
         self.variables = Variables(
-            dialect.macro, control=control_variables(self), initial=settings.variables, steps=self.steps_of
+            dialect, control=control_variables(self), initial=settings.variables, steps=self.steps_of
         )
         self.stored: dict[int, tuple[float, Setup]] = {}
         self.library = Library(settings.search_path)
@@ -77,6 +79,8 @@ class Session:
         self.line_offset = 0
         self.blocks = 0
         self.jumps = 0
+        self.jumps_at_motion = 0
+        self.assumed: set[int] = set()
 
     @property
     def level(self) -> Level:
@@ -138,6 +142,7 @@ class Session:
         """Ends the innermost level, or starts it again where it is to be repeated."""
         level = self.level
         if repeat and level.repeats > 0:
+            self.count_jump(self.place)
             level.begin_again()
             if level.owns_variables:
                 self.variables.pop()
@@ -163,11 +168,27 @@ class Session:
         """Counts a jump back, so that an endless loop is found before it has run for long.
 
         Raises:
-            GcodeError: beyond `Limits.jumps`.
+            GcodeError: beyond `Limits.jumps`, or `Limits.idle_jumps` while nothing moves.
         """
         self.jumps += 1
-        if self.jumps > self.settings.limits.jumps:
-            self._run_away(place.line, f"more than {self.settings.limits.jumps} jumps back were made")
+        limits = self.settings.limits
+        if self.jumps > limits.jumps:
+            self._run_away(place.line, f"more than {limits.jumps} jumps back were made")
+        if self.jumps - self.jumps_at_motion > limits.idle_jumps:
+            self._run_away(place.line, f"more than {limits.idle_jumps} jumps back were made without a motion")
+
+    def check_repeats(self, block: ParsedBlock, word: Word, count: int) -> None:
+        """Refuses a repeat count that `Limits.jumps` does not allow, before anything is repeated.
+
+        Raises:
+            GcodeError: where the count exceeds the limit.
+        """
+        most = self.settings.limits.jumps
+        if count > most:
+            self.end()
+            raise block.error(
+                word, "runaway", f"{word.text} with {count} repeats", f"at most {most}, or a higher limit"
+            )
 
     def _run_away(self, line: int, problem: str) -> NoReturn:
         self.end()

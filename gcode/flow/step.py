@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from gcode.control.command import Command, resolve
+from gcode.control.command import Command, control_text_notice, resolve
 from gcode.control.state import State
 from gcode.events import Block, Event, Notice, ProgramStop
 from gcode.flow.requests import CALL_ACTIONS
@@ -68,12 +68,12 @@ def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...
     if machine_move and "motion" not in command.phases:
         word = machine_move.word
         raise command.block.error(word, "missing-axis", f"{word.text} names no axis", "at least one of X, Y, Z")
-    first = Block(place=command.block.place)
+    first: tuple[Event, ...] = (Block(place=command.block.place), *command.notices)
     events: list[Event] = []
     if state.waiting is None:
-        events.append(first)
+        events.extend(first)
     else:
-        state, ready = through(state, None, (first,))
+        state, ready = through(state, None, first)
         events.extend(ready)
     if state.compensates:
         _check_under_compensation(state, command)
@@ -104,7 +104,9 @@ def _asks_corner(command: Command) -> bool:
 def _percent(state: State, block: ParsedBlock) -> tuple[State, tuple[Event, ...]]:
     """The first percent sign starts a program, the next, or one after blocks, ends it."""
     if not state.started:
-        return replace(state, started=True), ()
+        dialect = state.control.dialect
+        notices = (control_text_notice(dialect, block.place, "%"),) if "%" in dialect.senders_text else ()
+        return replace(state, started=True), notices
     state, events = through(state, None, (ProgramStop(place=block.place, optional=False, end=True),))
     return replace(state, ended=True), events
 
@@ -116,7 +118,10 @@ def _numbers(state: State, block: ParsedBlock, *, first_of_program: bool) -> Sta
             if word.letter == "N" and not state.control.dialect.whole_block_numbers:
                 if word is not block.words[0]:
                     raise block.error(word, "block-number-place", f"{word.text} inside a block", "N at its start")
-                not_negative(block, word)
+                number = not_negative(block, word)
+                largest = state.control.dialect.largest_block_number
+                if largest is not None and number > largest:
+                    raise block.error(word, "bad-value", f"{word.text} is not a block number", f"N0 to N{largest}")
                 continue
             number = whole_number(block, word)
             if word.letter == "O":

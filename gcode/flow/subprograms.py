@@ -35,6 +35,7 @@ def call_macro(session: Session, block: ParsedBlock, macro: tuple[Word, tuple[Wo
     count = next((whole_number(block, w) for w in words if w.letter == "L"), 1)
     if number is None and block.name is None:
         raise block.error(word, "missing-word", f"{word.text} without P", "P and the number of a program")
+    session.check_repeats(block, word, count)
     arguments = macro_arguments(block, [w for w in words if w.letter not in "PL"])
     program, spot, name = _find(session, block, word, number)
     modal = ModalMacro(program=program, spot=spot, name=name, arguments=arguments, count=count)
@@ -92,6 +93,7 @@ def _call_program(session: Session, block: ParsedBlock, request: CallRequest) ->
             problem = f"{name} has no block N{request.label}"
             raise block.error(request.word, "unknown-label", problem, "a block number of the subprogram")
         spot = start
+    session.check_repeats(block, request.word, request.count)
     if request.count < 1:
         return
     session.enter(
@@ -120,6 +122,7 @@ def _find(session: Session, block: ParsedBlock, word: Word, number: int | None) 
 
 
 def _call_label(session: Session, block: ParsedBlock, request: CallRequest) -> None:
+    session.check_repeats(block, request.word, request.count)
     level = session.level
     number = request.number or 0
     spot = level.program.label(number, level.spot.offset - 1)

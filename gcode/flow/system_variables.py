@@ -122,17 +122,35 @@ class SystemVariables:
         position = self._fanuc_position(index)
         if position is not None:
             return position / unit
+        offset = self._read_offset(index)
+        if offset is not None:
+            return offset / unit
+        if self._counter(index):
+            return 0.0
+        raise _unknown(index, "not a variable of this control")
+
+    def _read_offset(self, index: int) -> float | None:
+        """A length of the offset memory, mm, None for another variable."""
+        state = self._state
         place = _offset_place(state, index)
         if place is not None:
             name, axis = place
             if name in _COMMON_SHIFTS:
-                return float(getattr(state.setup, _COMMON_SHIFTS[name])[axis]) / unit
-            return state.setup.offsets.get(name, WorkOffset()).zero_mm[axis] / unit
+                return float(getattr(state.setup, _COMMON_SHIFTS[name])[axis])
+            return state.setup.offsets.get(name, WorkOffset()).zero_mm[axis]
         column = _tool_column(state, index)
-        if column is not None:
-            row = state.setup.tools.get(column[1], ToolOffset())
-            return float(getattr(row, column[0])) / unit
-        raise _unknown(index, "not a variable of this control")
+        return None if column is None else float(getattr(state.setup.tools.get(column[1], ToolOffset()), column[0]))
+
+    def _counter(self, index: int) -> str:
+        """The meaning of a counter of the control, which is 0 here and reported once; empty for another variable."""
+        for first, count, meaning in self._state.control.dialect.counters:
+            if first <= index < first + count:
+                if index not in self._session.assumed:
+                    self._session.assumed.add(index)
+                    text = f"#{index} ({meaning}) counts as 0, because a simulation does not know it"
+                    self._session.pending.append(Notice(place=self._session.place, code="assumed-zero", text=text))
+                return meaning
+        return ""
 
     def _fanuc_position(self, index: int) -> float | None:
         state = self._state
@@ -156,8 +174,8 @@ class SystemVariables:
                 ProgramStop(place=self._session.place, optional=False, end=False, message=self._message())
             )
             return
-        if index in _IGNORED or index in _UNKNOWN_CLOCKS:
-            meaning = _IGNORED.get(index) or _UNKNOWN_CLOCKS[index]
+        meaning = _IGNORED.get(index) or _UNKNOWN_CLOCKS.get(index) or self._counter(index)
+        if meaning:
             text = f"#{index} ({meaning}) has no effect on the simulated motion"
             self._session.pending.append(Notice(place=self._session.place, code="no-motion", text=text))
             return

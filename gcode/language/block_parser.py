@@ -9,7 +9,7 @@ from gcode.dialects import FANUC, Dialect
 from gcode.dialects.macro_language import MacroLanguage
 from gcode.errors import GcodeError, Place
 from gcode.language.blocks import ParsedBlock, Word
-from gcode.language.expressions import EvaluationError, Source, parse_operand
+from gcode.language.expressions import EvaluationError, Source, parse_operand, parse_sum
 from gcode.language.statement_parser import parse_assignment, parse_statement
 
 #: Longest line that is read, characters; controls stop at a few hundred.
@@ -29,6 +29,8 @@ _KEYWORD = re.compile(r"IF|THEN|ELSE|WHILE|DO|END|GOTO|SUB|CALL|REPEAT|RETURN|BR
 #: Signs that LinuxCNC uses as letters: of polar words, and of a spindle's number.
 _SIGN_LETTERS = frozenset("@^$")
 _DIGITS = frozenset("0123456789")
+#: Signs that continue an expression; a slash after a word's number is left to block delete.
+_OPERATORS = frozenset("+-*")
 _CONTROL_NAMES = {"\x00": "NUL", "\r": "carriage return", "\x1a": "substitute (Ctrl-Z)"}
 
 
@@ -55,6 +57,8 @@ def parse_blocks(place: Place, dialect: Dialect = FANUC, *, block_delete: bool =
             a number out of range, a broken expression or statement, and lines over `MAX_LINE` characters.
     """
     text = place.text
+    if dialect.most_characters is not None and len(text) > dialect.most_characters:
+        _check_buffer(place, dialect, dialect.most_characters)
     if len(text) <= MAX_LINE and _PLAIN.fullmatch(text) and not (dialect.macro.named and "O" in text.upper()):
         return (ParsedBlock(place=place, words=_plain_words(place)),)
     _check_characters(place)
@@ -134,7 +138,9 @@ def _reads_as_block(text: str) -> bool:
     bare = re.sub(r"\([^)]*\)", "", text).replace(" ", "").replace("\t", "").upper()
     if not bare:
         return True
-    return bool(re.match(r"/?\d?(?:,?[A-Z][-+]?[\d.#\[]|#|IF\[|WHILE\[|GOTO|DO\d|END\d|O<)", bare))
+    return bool(
+        re.match(r"/?\d?(?:,?[A-Z][-+]?[\d.#\[]|#|IF\[|WH(?:I|IL|ILE)?\[|GO(?:T|TO)?[\d#\[]|DO\d|END?\d|O<)", bare)
+    )
 
 
 def _block(place: Place, dialect: Dialect, segment: _Segment, *, block_delete: bool) -> ParsedBlock:
@@ -253,6 +259,8 @@ def _worked_out(place: Place, source: Source, start: int, letter: str, position:
     signed = digits in ("", "+", "-")
     if signed and source.language.name != "none" and (following in ("#", "[") or _function_follows(source, position)):
         expression, end = parse_operand(replace(source, letter=letter), position)
+        if source.text[end : end + 1] in _OPERATORS:
+            raise _without_brackets(place, source, position, letter)
         return Word(letter, 0.0, letter + expression.text, column, expression), end
     if signed:
         keyword = _KEYWORD.match(source.text, start)
@@ -264,6 +272,17 @@ def _worked_out(place: Place, source: Source, start: int, letter: str, position:
         raise GcodeError(_at(place, column), "missing-number", f"{shown} has no number", f"{letter} and a number")
     problem = f"{letter}{digits} is not a number"
     raise GcodeError(_at(place, column), "bad-number", problem, "digits with at most one point")
+
+
+def _without_brackets(place: Place, source: Source, position: int, letter: str) -> GcodeError:
+    """The error for a word whose number is an expression with an operator outside of brackets."""
+    expression, end = parse_sum(source, position)
+    following = source.text[end : end + 1]
+    if following and not following.isalpha() and following not in "#,/":
+        return _unexpected(place, source, end)
+    column = source.column(position)
+    problem = f"{letter}{expression.text} is a computed number without brackets"
+    return GcodeError(_at(place, column), "bad-expression", problem, f"{letter}[{expression.text}]")
 
 
 def _function_follows(source: Source, position: int) -> bool:
@@ -296,6 +315,17 @@ def _check_characters(place: Place) -> None:
         name = _CONTROL_NAMES.get(character, "control character")
         problem = f"{name} (0x{ord(character):02x}) in the line"
         raise GcodeError(_at(place, found.start() + 1), "control-character", problem, "printable text")
+
+
+def _check_buffer(place: Place, dialect: Dialect, most: int) -> None:
+    """Refuses a block that does not fit into the control's line buffer, which has no blanks and comments in it."""
+    text = re.sub(r"\([^)]*\)?|;.*|[ \t/]", "", place.text)
+    if len(text) > most:
+        problem = (
+            f"the block has {len(text)} characters, which the line buffer of a {dialect.name} control does not hold"
+        )
+        short = replace(place, text=place.text[:80] + "...", column=most + 1)
+        raise GcodeError(short, "line-too-long", problem, f"at most {most} characters without blanks and comments")
 
 
 def _unexpected(place: Place, source: Source, position: int) -> GcodeError:

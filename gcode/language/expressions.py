@@ -14,7 +14,9 @@ from gcode.dialects.macro_language import MacroLanguage, MathError, rounded
 MAX_DEPTH = 60
 _NUMBER = re.compile(r"\d++(?:\.\d*+)?+|\.\d++", re.ASCII)
 _NAME = re.compile(r"[A-Z]+")
-_OPERATOR = re.compile(r"\*\*|[-+*/]|MOD|AND|XOR|OR|EQ|NE|GT|GE|LT|LE")
+_OPERATOR = re.compile(r"\*\*|[-+*/]|MOD?|AND?|XOR?|OR|EQ|NE|GT|GE|LT|LE")
+#: Operators by their abbreviations.
+_ABBREVIATED = {"MO": "MOD", "AN": "AND", "XO": "XOR"}
 
 Function: TypeAlias = Callable[["Scope"], "float | None"]
 Step: TypeAlias = Callable[["float | None", "Scope"], float]
@@ -140,6 +142,19 @@ def parse_operand(source: Source, position: int, depth: int = 0) -> tuple[Expres
     return Expression(source.text[position:end], source.column(position), function), end
 
 
+def parse_sum(source: Source, position: int) -> tuple[Expression, int]:
+    """Reads operands and the operators between them, without brackets around them, as far as they go.
+
+    Returns:
+        The expression, and the position after it.
+
+    Raises:
+        EvaluationError: where there is none.
+    """
+    function, end = _binary(source, position, 0, 1)
+    return Expression(source.text[position:end], source.column(position), function), end
+
+
 def _signed(source: Source, position: int, depth: int) -> tuple[Function, int]:
     if depth > MAX_DEPTH:
         raise source.error(position, "nesting", f"more than {MAX_DEPTH} brackets inside each other", "fewer")
@@ -225,9 +240,7 @@ def variable_number(index: Expression, scope: Scope) -> int:
 
 def _bracket(source: Source, position: int, depth: int) -> tuple[Function, int]:
     function, end = _binary(source, position + 1, 0, depth + 1)
-    if not source.at(end, "]"):
-        problem = f"[ is not closed before {source.text[end : end + 1] or 'the end of the block'}"
-        raise source.error(position, "bad-expression", problem, "]")
+    _closing(source, position, end)
     return function, end + 1
 
 
@@ -237,12 +250,17 @@ def _binary(source: Source, position: int, least: int, depth: int) -> tuple[Func
     steps: list[Step] = []
     while True:
         match = _OPERATOR.match(source.text, position)
-        rank = source.language.operators.get(match[0]) if match else None
+        name = _operator_name(source.language, match[0]) if match else ""
+        rank = source.language.operators.get(name)
         if match is None or rank is None or rank[0] < least:
             return (_chained(left, tuple(steps)) if steps else left), position
         right, end = _binary(source, match.end(), rank[0] + 1, depth + 1)
-        steps.append(_applied(source, position, match[0], right))
+        steps.append(_applied(source, position, name, right))
         position = end
+
+
+def _operator_name(language: MacroLanguage, text: str) -> str:
+    return _ABBREVIATED.get(text, text) if language.abbreviates else text
 
 
 def _chained(left: Function, steps: tuple[Step, ...]) -> Function:
@@ -322,9 +340,12 @@ _ALIASES = {"SQR": "SQRT", "RND": "ROUND", "ATN": "ATAN"}
 
 
 def _closing(source: Source, bracket: int, end: int) -> None:
-    if not source.at(end, "]"):
-        problem = f"[ is not closed before {source.text[end : end + 1] or 'the end of the block'}"
-        raise source.error(bracket, "bad-expression", problem, "]")
+    if source.at(end, "]"):
+        return
+    if end < len(source.text):
+        problem = f"unexpected {source.text[end]!r} inside brackets"
+        raise source.error(end, "bad-expression", problem, "an operator or ]")
+    raise source.error(bracket, "bad-expression", "[ is not closed before the end of the block", "]")
 
 
 def _existence(source: Source, bracket: int) -> tuple[Function, int]:

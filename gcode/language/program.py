@@ -34,10 +34,19 @@ _O_LINE = re.compile(
     re.IGNORECASE | re.MULTILINE,
 )
 _LOOP = re.compile(
-    rb"^[ \t]*(?:/\d?[ \t]*)?(?:N[ \t]*\d+[ \t]*)?(?:(?:WHILE|WH)[ \t]*\[.*\][ \t]*)?(DO|END)[ \t]*(\d)",
+    rb"^[ \t]*(?:/\d?[ \t]*)?(?:N[ \t]*\d+[ \t]*)?(?:WH(?:ILE|IL|I)?[ \t]*\[.*\][ \t]*)?(DO|END?)[ \t]*(\d)",
     re.IGNORECASE | re.MULTILINE,
 )
 _PERCENT = re.compile(rb"^[ \t]*%", re.MULTILINE)
+
+
+#: Characters of a serial line that frame a program or fill pauses: NUL, DC1 to DC4, DEL; at the end also EOT and SUB.
+_FILLERS = b"\x00\x11\x12\x13\x14\x7f"
+_FRAMING = re.compile(
+    rb"\A[\x00\x11-\x14\x7f\s]+|^[\x00\x11-\x14\x7f]+(?=[ \t]*%)|[\x00\x04\x11-\x14\x1a\x7f\s]+\Z"
+    rb"|(?<=%)[\x00\x11-\x14\x7f]+(?=\s)|(?<=\n)[\x00\x7f]+",
+    re.MULTILINE,
+)
 
 
 class Spot(NamedTuple):
@@ -70,7 +79,7 @@ class Program:
     """
 
     def __init__(self, text: bytes, file: str, folder: Path | None = None) -> None:
-        self.text = text.removeprefix(b"\xef\xbb\xbf")
+        self.text = _without_transmission(text.removeprefix(b"\xef\xbb\xbf"))
         self.file = file
         self.folder = folder
 
@@ -216,6 +225,15 @@ def _decoded(line: bytes) -> str:
     except UnicodeDecodeError:
         text = line.decode("latin-1")
     return text.rstrip("\r")
+
+
+def _without_transmission(text: bytes) -> bytes:
+    """The text without the characters of a serial line around it and the fillers after its line ends."""
+    removed = _FILLERS + b"\x04\x1a"
+    if not any(character in text for character in removed):
+        return text
+    bare = _FRAMING.sub(lambda match: match[0].translate(None, removed), text)
+    return bare if bare.strip() else text
 
 
 def program_of(source: str | bytes | Iterable[str], file: str) -> Program:

@@ -6,10 +6,10 @@ import re
 from collections.abc import Callable
 
 from gcode.language.blocks import Assignment, End, Goto, IfThen, OKeyword, Output, OWord, ParsedBlock, Statement, While
-from gcode.language.expressions import Expression, Source, parse_operand, parse_variable
+from gcode.language.expressions import Expression, Source, parse_operand, parse_sum, parse_variable
 
-_OUTPUT = re.compile(r"POPEN|PCLOS|DPRNT|BPRNT|SETVN")
-_LOOP = re.compile(r"(DO|END)(\d+)")
+_OUTPUTS = ("POPEN", "PCLOS", "DPRNT", "BPRNT", "SETVN")
+_NUMBER = re.compile(r"\d+")
 _O_KEYWORD = re.compile("|".join(sorted((k.value.upper() for k in OKeyword), key=len, reverse=True)))
 _O_NUMBER = re.compile(r"\d+")
 #: Keywords that take no bracketed expression, and those that take as many as come.
@@ -41,38 +41,60 @@ def _fanuc(source: Source, position: int, then: Then) -> tuple[Statement, int] |
     column = source.column(position)
     if source.at(position, "IF["):
         return _if(source, position, then)
-    if source.at(position, "GOTO"):
-        target, end = parse_operand(source, position + 4)
+    behind = keyword_end(source, position, "GOTO")
+    if behind:
+        target, end = parse_operand(source, behind)
         return Goto(target=target, column=column), end
-    if source.at(position, "WHILE["):
-        return _while(source, position)
-    loop = _LOOP.match(source.text, position)
-    if loop:
-        kind = While if loop[1] == "DO" else End
-        return kind(label=int(loop[2]), column=column), loop.end()
-    output = _OUTPUT.match(source.text, position)
-    if output:
-        return Output(keyword=output[0], text=source.text[output.end() :], column=column), len(source.text)
+    behind = keyword_end(source, position, "WHILE")
+    if behind and source.at(behind, "["):
+        return _while(source, position, behind)
+    for keyword, kind in (("DO", While), ("END", End)):
+        label = _loop_label(source, position, keyword)
+        if label:
+            return kind(label=int(label[0]), column=column), label.end()
+    for keyword in _OUTPUTS:
+        behind = keyword_end(source, position, keyword)
+        if behind:
+            return Output(keyword=keyword, text=source.text[behind:], column=column), len(source.text)
     return None
+
+
+def keyword_end(source: Source, position: int, keyword: str) -> int:
+    """The position after a keyword, 0 where it is not there.
+
+    A language that abbreviates takes its first two or more letters for it, where no other letter follows.
+    """
+    for length in range(len(keyword), 1 if source.language.abbreviates else len(keyword) - 1, -1):
+        end = position + length
+        if source.at(position, keyword[:length]):
+            return 0 if length < len(keyword) and source.text[end : end + 1].isalpha() else end
+    return 0
+
+
+def _loop_label(source: Source, position: int, keyword: str) -> re.Match[str] | None:
+    behind = keyword_end(source, position, keyword)
+    return _NUMBER.match(source.text, behind) if behind else None
 
 
 def _if(source: Source, position: int, then: Then) -> tuple[Statement, int]:
     column = source.column(position)
     condition, end = parse_operand(source, position + 2)
-    if source.at(end, "GOTO"):
-        target, behind = parse_operand(source, end + 4)
+    behind = keyword_end(source, end, "GOTO")
+    if behind:
+        target, behind = parse_operand(source, behind)
         return Goto(target=target, condition=condition, column=column), behind
-    if source.at(end, "THEN"):
-        return IfThen(condition=condition, then=then(end + 4), column=column), len(source.text)
+    behind = keyword_end(source, end, "THEN")
+    if behind:
+        return IfThen(condition=condition, then=then(behind), column=column), len(source.text)
     raise source.error(end, "bad-statement", "IF[...] without GOTO or THEN", "GOTO and a block number, or THEN")
 
 
-def _while(source: Source, position: int) -> tuple[Statement, int]:
-    condition, end = parse_operand(source, position + 5)
-    loop = _LOOP.match(source.text, end)
-    if not loop or loop[1] != "DO":
+def _while(source: Source, position: int, behind: int) -> tuple[Statement, int]:
+    condition, end = parse_operand(source, behind)
+    label = _loop_label(source, end, "DO")
+    if not label:
         raise source.error(end, "bad-statement", "WHILE[...] without DO", "DO1, DO2 or DO3")
-    return While(label=int(loop[2]), condition=condition, column=source.column(position)), loop.end()
+    return While(label=int(label[0]), condition=condition, column=source.column(position)), label.end()
 
 
 def parse_assignment(source: Source, position: int) -> tuple[Assignment, int]:
@@ -90,16 +112,11 @@ def parse_assignment(source: Source, position: int) -> tuple[Assignment, int]:
 
 def parse_whole(source: Source, position: int) -> tuple[Expression, int]:
     """Reads an expression that no bracket encloses, up to the end of the block."""
-    bracketed = Source(
-        f"[{source.text[position:]}]",
-        (source.column(position), *source.columns[position:], source.column(len(source.text))),
-        source.language,
-    )
-    expression, end = parse_operand(bracketed, 0)
-    inside = Expression(source.text[position:], source.column(position), expression.function)
-    if end < len(bracketed.text):
-        raise source.error(position + end - 2, "bad-expression", "more text after the value", "the end of the block")
-    return inside, len(source.text)
+    expression, end = parse_sum(source, position)
+    if end < len(source.text):
+        problem = f"unexpected {source.text[end]!r} after the value"
+        raise source.error(end, "bad-expression", problem, "an operator, or the end of the block")
+    return expression, end
 
 
 def _o_word(source: Source, position: int) -> tuple[Statement, int] | None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from gcode.control.command import Command
 from gcode.control.coordinates import SAME_POSITION_MM
-from gcode.control.state import State
+from gcode.control.state import AXES, State
 from gcode.dialects import ArcTolerance
 from gcode.errors import GcodeError
 from gcode.events import PLANE_AXES, ArcMotion, Point
@@ -22,7 +22,11 @@ from gcode.phases.end_points import extra_end, feed_mm_min, moved_to, program_en
 from gcode.phases.modes import Result, whole_number
 
 _CENTRE_LETTERS = "IJK"
+#: Turns that one arc may make; a control would be busy with them for days.
+MOST_TURNS = 100_000
 _TURNS: Mapping[str, int] = {"G2": -1, "G3": 1}
+#: Most that rounding in the coordinates of an arc's ends takes from half its chord.
+_ROUNDING_MM = 1e-9
 _PLANE_NAMES: Mapping[int, str] = {17: "XY", 18: "ZX", 19: "YZ"}
 
 
@@ -49,6 +53,8 @@ def arc(state: State, command: Command) -> Result:
     """
     if state.modes.feed <= 0.0:
         feed_mm_min(state, command, 0.0)
+    if state.control.dialect.needs_axis_words:
+        _require_plane_axis(state, command)
     ends = _ends(state, command)
     centre_words = {letter: command.words[letter] for letter in _CENTRE_LETTERS if letter in command.words}
     radius = command.words.get("R")
@@ -63,6 +69,13 @@ def arc(state: State, command: Command) -> Result:
         problem = f"{state.modes.motion} without a centre"
         raise command.block.error(None, "arc-without-centre", problem, "I, J, K or R")
     return _arc_motion(state, command, _closed(state, ends), centre)
+
+
+def _require_plane_axis(state: State, command: Command) -> None:
+    first, second = (AXES[axis] for axis in PLANE_AXES[state.machine.plane][:2])
+    if command.words.keys().isdisjoint({first, second}):
+        problem = f"{state.modes.motion} without an axis word of the {_plane(state)}"
+        raise command.block.error(None, "missing-axis", problem, f"{first} or {second}")
 
 
 def _ends(state: State, command: Command) -> _Ends:
@@ -117,6 +130,8 @@ def _whole_turns(command: Command) -> int:
     turns = whole_number(command.block, word)
     if turns == 0:
         raise command.block.error(word, "bad-value", f"{word.text} is not a number of turns", "P1 or more")
+    if turns > MOST_TURNS:
+        raise command.block.error(word, "bad-value", f"{word.text} is far too many turns", f"at most P{MOST_TURNS}")
     return turns
 
 
@@ -148,8 +163,9 @@ def _over(state: State, start: Point, end: Point) -> Point:
 def _centre_from_words(state: State, command: Command, ends: _Ends, words: Mapping[str, Word]) -> Point:
     """Centre from I, J, K, checked against both ends."""
     first, second, normal = PLANE_AXES[state.machine.plane]
-    if _CENTRE_LETTERS[normal] in words:
-        word = words[_CENTRE_LETTERS[normal]]
+    other = words.get(_CENTRE_LETTERS[normal])
+    if other is not None and (state.control.dialect.centre_words_of_plane or len(words) == 1):
+        word = other
         expected = f"{_CENTRE_LETTERS[first]} and {_CENTRE_LETTERS[second]}"
         raise command.block.error(word, "arc-plane", f"{word.text} in an arc of the {_plane(state)}", expected)
     if state.modes.absolute_centres and len(words) < 2:
@@ -196,7 +212,8 @@ def _radius_error(
         f"with {now} centre {' '.join(word.text for word in words.values())}"
     )
     alternative = _radii(state, ends, _centre(state, ends, words, absolute=not state.modes.absolute_centres))
-    expected = f"radii within {_tolerance(state).absolute_mm:g} mm of each other"
+    tolerance = _tolerance(state)
+    expected = f"radii within {tolerance}{',' if tolerance.relative else ''} of each other"
     if _tolerance(state).accepts(*alternative) and min(alternative) > SAME_POSITION_MM:
         switch = "G91.1" if state.modes.absolute_centres else "G90.1"
         expected += f"; {other} arc centres ({switch}, or the setting arc_centres) would fit"
@@ -221,7 +238,7 @@ def _centre_from_radius(state: State, command: Command, ends: _Ends, word: Word)
     if chord <= SAME_POSITION_MM:
         problem = f"{word.text} with the end of the arc at its start"
         raise command.block.error(word, "arc-no-chord", problem, "a centre by I, J, K for a full circle")
-    if chord / 2.0 - abs(radius) > state.control.dialect.radius_tolerance_mm:
+    if chord / 2.0 - abs(radius) > state.control.dialect.radius_tolerance_mm + _ROUNDING_MM:
         problem = f"{word.text} is too small for a chord of {chord:.4f} mm"
         raise command.block.error(
             word, "arc-radius-too-small", problem, f"an absolute value of at least {chord / 2.0:.4f} mm"

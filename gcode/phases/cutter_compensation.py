@@ -37,8 +37,11 @@ def set_radius(state: State, command: Command) -> Result:
     if code is None and not state.compensates:
         return state, notices
     side = _SIDES[code] if code else _present_side(state)
-    state = _on(state, command, side, _radius(state, command, code), uses[0].word if uses else command.words["D"])
-    return state, notices
+    word = uses[0].word if uses else command.words["D"]
+    if code in _SIDES and state.modes.radius_number is None and not state.control.dialect.compensation_defaults_to_tool:
+        text = f"{word.text} without D, and none before: D0 is active, so the radius is 0"
+        notices = (*notices, Notice(place=command.block.place_of(word), code="radius-zero", text=text))
+    return _on(state, command, side, _radius(state, command, code), word), notices
 
 
 def _present_side(state: State) -> compensation.Hand:
@@ -67,10 +70,8 @@ def _radius(state: State, command: Command, code: str | None) -> float:
             raise command.block.error(use, "missing-radius", f"{code} without D", "D and the tool's diameter")
         return word.value * state.modes.unit_mm / 2.0
     number = state.modes.radius_number if dialect.length_word_is_modal or word is not None else None
-    if number is None or (number == 0 and dialect.compensation_defaults_to_tool):
-        number = state.machine.tool if dialect.compensation_defaults_to_tool else None
-    if number is None:
-        raise command.block.error(use, "missing-radius", f"{code} without D, and none before", "D and a number")
+    if not number:
+        number = state.machine.tool if dialect.compensation_defaults_to_tool else 0
     row = _row(state, command, number, word or use)
     if row.orientation not in ROUND_ORIENTATIONS:
         problem = f"tool {number} is a lathe tool of orientation {row.orientation}"

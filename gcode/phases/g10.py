@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from gcode.control.command import Command
 from gcode.control.coordinates import ORIGIN, CoordinateFrame, difference, plus
-from gcode.control.state import EXTRA_AXES, State, WorkOffset
+from gcode.control.state import AXES, EXTRA_AXES, State, WorkOffset
 from gcode.events import NO_EXTRA, Event, Notice, Point
 from gcode.language.blocks import ParsedBlock
 from gcode.phases.modes import Action, Result, whole_number
@@ -37,7 +37,7 @@ def set_data(state: State, command: Command) -> Result:
             word, "unknown-data", f"{word.text} is not a kind of data that can be set here", known
         )
     takes = _TAKES[table[kind]]
-    for letter in command.words.keys() & set(use.rule.letters) - set("LP" + takes):
+    for letter in command.words.keys() & set(use.rule.letters) - set("LPN" + takes):
         problem = f"{command.words[letter].text} has no meaning in {use.word.text} {word.text}"
         raise command.block.error(command.words[letter], "unused-word", problem, f"only {', '.join('P' + takes)}")
     state, events = _DATA[table[kind]](state, command)
@@ -64,6 +64,9 @@ def _set_zero_here(state: State, command: Command) -> Result:
 
 
 def _write_offset(state: State, command: Command, *, from_position: bool, additional: bool = False) -> Result:
+    if state.control.dialect.needs_axis_words and command.words.keys().isdisjoint(AXES):
+        use = command.of_phase("data")[0].word
+        raise command.block.error(use, "missing-axis", f"{use.text} names no axis", "at least one of X, Y, Z")
     name = _offset_name(state, command, additional=additional)
     if name == "external":
         base = state.setup.external_mm if state.modes.absolute else ORIGIN

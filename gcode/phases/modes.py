@@ -80,7 +80,7 @@ def _with_motion(state: State, code: str) -> State:
     """The state under a motion code; outside of a cycle nothing of the last cycle is kept."""
     modes = state.modes
     cancels = code == "G80"
-    if cancels and state.control.dialect.power_on_motion != "G80":
+    if cancels and "cycle" in state.control.dialect.codes["G80"].groups:
         code = modes.base_motion
     if code == modes.motion and not cancels:
         return state
@@ -179,11 +179,18 @@ def spindle_event(state: State, command: Command) -> SpindleChange:
 
 
 def select_tool(state: State, command: Command) -> Result:
-    """T: the tool that the next M6 puts in."""
-    word = command.words["T"]
+    """T: the tool that the next M6 puts in, or that is in from here on where the control has no tool change."""
+    word, dialect = command.words["T"], state.control.dialect
     number = whole_number(command.block, word)
+    if dialect.largest_tool is not None and number > dialect.largest_tool:
+        raise command.block.error(
+            word, "bad-value", f"{word.text} is not a tool number", f"T0 to T{dialect.largest_tool}"
+        )
     _check_tool(state, command, word, number)
-    return state.with_modes(next_tool=number), ()
+    state = state.with_modes(next_tool=number)
+    if not dialect.tool_word_changes or number == state.machine.tool:
+        return state, ()
+    return state.with_machine(tool=number), (ToolChange(place=command.block.place, tool=number),)
 
 
 def _check_tool(state: State, command: Command, word: Word, number: int) -> None:

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 from gcode.control.command import Command
 from gcode.control.state import AXES, State
-from gcode.events import LinearMotion, Point
+from gcode.dialects import Dialect
+from gcode.events import LinearMotion, Notice, Point
 from gcode.phases.arcs import arc
 from gcode.phases.drilling import drill
 from gcode.phases.end_points import extra_end, moved_to, programmed_end, require_axes, settled
@@ -52,15 +53,26 @@ def _machine_move(state: State, command: Command) -> Result:
     use = command.code("G53")
     word = use.word if use else None
     dialect, modes = state.control.dialect, state.modes
-    if not modes.absolute:
+    if not modes.absolute and dialect.machine_move_incremental == "refused":
         raise command.block.error(word, "g53-incremental", "G53 while G91 is active", "G90")
     if not dialect.machine_moves_rapid and modes.motion not in ("G0", "G1"):
         raise command.block.error(word, "g53-motion", f"G53 while {modes.motion} is active", "G0 or G1")
     if state.compensates:
         raise command.block.error(word, "g53-compensation", "G53 while cutter compensation is on", "G40 before it")
+    warnings = () if modes.absolute else (_incremental_warning(dialect, command),)
+    if not modes.absolute and dialect.machine_move_incremental == "ignored":
+        return state, warnings
     rapid = dialect.machine_moves_rapid or modes.motion == "G0"
     end = state.tip_of(_replaced(state.gauge_mm, command, modes.unit_mm))
-    return straight(settled(state, command), command, end, rapid=rapid)
+    state, events = straight(settled(state, command), command, end, rapid=rapid)
+    return state, (*warnings, *events)
+
+
+def _incremental_warning(dialect: Dialect, command: Command) -> Notice:
+    text = "G53 while G91 is active: machine coordinates are absolute, whatever the distance mode"
+    if dialect.machine_move_incremental == "ignored":
+        text = "G53 while G91 is active: the control ignores it, and the block does not move"
+    return Notice(place=command.block.place, code="g53-incremental", text=text)
 
 
 def _replaced(point: Point, command: Command, unit_mm: float) -> Point:

@@ -31,8 +31,9 @@ def _named(state: State, command: Command) -> frozenset[str]:
     Raises:
         GcodeError: where it names none and the dialect wants one.
     """
-    named = frozenset(axis for axis in AXES + state.control.dialect.extra_axes if axis in command.words)
-    if not named and not state.control.dialect.reference_all_axes:
+    dialect = state.control.dialect
+    named = frozenset(axis for axis in AXES + dialect.extra_axes + dialect.still_axes if axis in command.words)
+    if not named and not dialect.reference_all_axes:
         word = command.of_phase("reference")[0].word
         raise command.block.error(word, "missing-axis", f"{word.text} names no axis", "at least one of X, Y, Z")
     return named

@@ -116,6 +116,10 @@ def _variables(node: Node) -> dict[int, float]:
     return {number: value.number() for number, value in node.numbered("variable", 1)}
 
 
+def _m_codes(node: Node) -> dict[int, str]:
+    return {number: value.text("none") for number, value in node.numbered("M code", 0)}
+
+
 def _limits(node: Node) -> Limits:
     return Limits(**{key: value.whole(1) for key, value in node.known(f.name for f in fields(Limits))})
 
@@ -165,6 +169,7 @@ _FIELDS: Mapping[str, Callable[[Node], Any]] = MappingProxyType(
         "machine_units": _choice("mm", "inch"),
         "decimal_point": _choice("calculator", "increment"),
         "compensation_startup": _choice("A", "B"),
+        "m_codes": _m_codes,
         "limits": _limits,
     }
 )

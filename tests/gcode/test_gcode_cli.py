@@ -15,8 +15,8 @@ from rich.cells import cell_len
 
 from gcode.cli import run
 from gcode.cli.app import app
-from gcode.cli.machine_options import DialectName
-from gcode.dialects import DIALECTS
+from gcode.cli.machine_options import DialectName, ProgramDialect
+from gcode.dialects import AUTO, DIALECTS
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "gcode-command-line.md"
@@ -85,7 +85,7 @@ def test_tables_settings_and_options_meet_in_the_motions(cli: Cli, tmp_path: Pat
         "p.ngc": "T1 M6\nG43 H1\nG55 G0 X1 Z2\n/G0 X5\nM2\n",
         "t.tbl": "T1 P1 Z0.5\n",
         "p.var": "5241 10\n5243 -1\n",
-        "s.toml": 'units = "inch"\nblock_delete = false\n',
+        "s.toml": 'units = "inch"\nmachine_units = "inch"\nblock_delete = false\n',
     }
     for name, text in files.items():
         (tmp_path / name).write_text(text)
@@ -218,6 +218,7 @@ def test_wrong_use_of_the_command_line_is_one_message(cli: Cli, nc: Path, argume
     command = f"gcode {arguments[0]}" if arguments[0] in ("motions", "stats", "plot", "rewrite", "check") else "gcode"
     assert (code, out) == (2, "")
     assert re.fullmatch(rf"error: .+; see '{command} --help'\n", err)
+    assert "Value error" not in err
 
 
 @pytest.mark.parametrize(
@@ -377,6 +378,7 @@ def test_the_help_loads_nothing_heavy() -> None:
 
 def test_every_dialect_can_be_asked_for() -> None:
     assert {name.value for name in DialectName} == set(DIALECTS)
+    assert {name.value for name in ProgramDialect} == {*DIALECTS, AUTO}
 
 
 def test_the_page_has_every_command_and_option() -> None:

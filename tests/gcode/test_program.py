@@ -179,11 +179,10 @@ def test_a_loop_without_an_end_is_found_by_its_jumps(loop: str) -> None:
 
 
 def test_check_tells_every_mistake_once() -> None:
-    text = "G1 X1\nX2\nG41 G0 X5\nG3 F1 X20 I1\nX7 Y8 (\nG2 X30 I5 J0\nM6\nA1 G777 X2\nM30\nG999"
+    text = "G1 X1\nX2\nG0 X5\nG3 F1 X20 I1\nX7 Y8 (\nG2 X30 I5 J0\nM6\nA1 G777 X2\nM30\nG999"
     told = [(e.place.line, e.place.column, e.code) for e in check(text)]
     assert told == [
         (1, 1, "missing-feed"),
-        (3, 1, "missing-radius"),
         (4, 11, "arc-radius"),
         (5, 7, "unclosed-comment"),
         (7, 1, "missing-tool"),

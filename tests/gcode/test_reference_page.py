@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import dataclasses
 import importlib
 import re
 from collections.abc import Iterator
@@ -11,8 +12,9 @@ from types import ModuleType
 
 import pytest
 
-from gcode.dialects import DIALECTS
+from gcode.dialects import DIALECTS, Dialect
 from gcode.dialects.macro_language import FANUC_MACRO, LINUXCNC_MACRO
+from gcode.dialects.sources import NO_SOURCE, SOURCES
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -110,7 +112,7 @@ def test_every_letter_that_anything_takes_is_on_the_page(docs: dict[str, ModuleT
     assert taken | free <= shown
 
 
-@pytest.mark.parametrize("name", ["fanuc", "linuxcnc"])
+@pytest.mark.parametrize("name", ["fanuc", "haas", "linuxcnc"])
 def test_every_variable_that_can_be_read_or_set_is_on_the_page(name: str, docs: dict[str, ModuleType]) -> None:
     variables = docs["gcode_variables"]
     access = variables.access_of(DIALECTS[name], range(variables.NUMBERS_END))
@@ -153,3 +155,20 @@ def test_links_lead_to_files_and_headings(name: str) -> None:
 def test_haas_has_no_data_entry_that_only_g11_ends() -> None:
     assert "G11" not in DIALECTS["haas"].codes
     assert "ignored" not in DIALECTS["haas"].data_kinds.values()
+
+
+def test_every_rule_of_a_dialect_has_a_source_or_says_that_it_has_none(docs: dict[str, ModuleType]) -> None:
+    rules = {field.name for field in dataclasses.fields(Dialect)} - {*docs["gcode_tables"].ELSEWHERE}
+    assert set(SOURCES) == set(DIALECTS)
+    for name, sources in SOURCES.items():
+        assert set(sources) <= rules, name
+        assert all(text.strip() for text in sources.values())
+    page = page_text()
+    for name in DIALECTS:
+        assert len(cells(f"{name}-rules", page)) == len(rules)
+
+
+def test_rules_without_a_source_are_not_those_of_open_controls(docs: dict[str, ModuleType]) -> None:
+    for name in ("linuxcnc", "grbl"):
+        without = [row[0] for row in cells(f"{name}-rules", page_text()) if row[2] == NO_SOURCE]
+        assert len(without) <= 5, without

@@ -320,3 +320,12 @@ def test_the_program_itself_replays_a_coarse_slot(tmp_path: Path, capsys: pytest
     assert run(["export", result["mcap"], str(tmp_path / "forces.csv")]) == 0
     assert run(["mesh", result["mcap"], str(tmp_path / "part.stl")]) == 0
     assert run(["mesh", str(job), str(tmp_path / "part.3mf")]) == 0
+
+
+def test_options_replace_the_jobs_program_table(use: Use, job: Path) -> None:
+    fake = use(collision=False)
+    options = ["--dialect", "auto", "--tool", "7", "--m-code", "72", "--m-code", "117"]
+    assert run(["replay", str(job), "--quiet", *options]) == 0
+    assert fake.job is not None
+    program = fake.job.program
+    assert (program.dialect, program.tool, program.m_codes) == ("auto", 7, {72: "none", 117: "none"})

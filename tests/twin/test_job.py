@@ -202,3 +202,12 @@ def test_a_job_with_another_simulation_is_checked(tmp_path: Path) -> None:
         job.with_simulation(slice_pitch_mm=0)
     with pytest.raises(JobError, match="slice_pich_mm: unknown key"):
         job.with_simulation(slice_pich_mm=1.0)
+
+
+def test_a_job_with_another_program_table(tmp_path: Path) -> None:
+    job = load_job(job_folder(tmp_path, program__m_codes={"117": "none"}))
+    assert job.program.m_codes == {117: "none"}
+    changed = job.with_program(tool=7, dialect="auto", m_codes={72: "none"})
+    assert (changed.program.tool, changed.program.dialect, changed.program.m_codes) == (7, "auto", {72: "none"})
+    with pytest.raises(JobError, match="no tool has the number 9; expected one of 1, 7"):
+        job.with_program(tool=9)

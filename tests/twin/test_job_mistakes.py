@@ -19,8 +19,15 @@ CYLINDER = {"centre": [0, 0], "diameter": 10, "min": 0, "max": 5}
 MISTAKES: list[tuple[dict[str, Any], str]] = [
     (
         {"program__dialect": "heidenhain"},
-        'program.dialect = "heidenhain": expected one of "fanuc", "haas", "linuxcnc", "grbl" '
-        "(control that the program is written for)",
+        'program.dialect = "heidenhain": expected one of "fanuc", "haas", "linuxcnc", "grbl", "auto" '
+        "(control that the program is written for; auto takes the likeliest)",
+    ),
+    ({"program__m_codes": {"72": "stop"}}, 'program.m_codes.72 = "stop": expected one of "none"'),
+    ({"program__m_codes": {"M72": "none"}}, "program.m_codes.M72: unknown key; expected a whole number"),
+    (
+        {"program__m_codes": 72},
+        "program.m_codes = 72: expected a table by number (M codes of the machine builder, by number: "
+        '{ 72 = "none" } for one that moves nothing)',
     ),
     ({"program__file": 3}, "program.file = 3: expected a file name (NC program, relative to the job file's folder)"),
     (

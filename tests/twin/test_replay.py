@@ -253,7 +253,7 @@ def test_events_come_before_what_they_begin(tmp_path: Path) -> None:
             "G1 X5 F100\nM30\n",
             {},
             "{folder}/part.nc:1: feed motion without a tool in the spindle; expected a tool change (T.. M6) before it, "
-            "or program.tool in the job",
+            "program.tool in the job, or --tool N",
         ),
     ],
 )

@@ -21,6 +21,7 @@ from twin.settings.table import FilePath, Key, Point, Table
 #: The keys of a stock, of which one is given.
 STOCKS = ("box_mm", "cylinder_mm", "stl")
 SixNumbers: TypeAlias = Annotated[tuple[float, float, float, float, float, float], Strict(False)]
+MCode: TypeAlias = Annotated[int, Strict(False), Field(ge=0)]
 Rows: TypeAlias = Annotated[tuple[Annotated[tuple[float, ...], Strict(False)], ...], Strict(False)]
 RapidPath: TypeAlias = Literal["independent", "straight"]
 #: Path of rapids on each control as delivered: FANUC parameter 1401 bit 1 is 0, Haas setting 335 is off; LinuxCNC and
@@ -38,8 +39,8 @@ class Program(Table):
     """The NC program."""
 
     file: FilePath = Field(description="NC program, relative to the job file's folder")
-    dialect: Literal["fanuc", "haas", "linuxcnc", "grbl"] = Field(
-        default="fanuc", description="control that the program is written for"
+    dialect: Literal["fanuc", "haas", "linuxcnc", "grbl", "auto"] = Field(
+        default="fanuc", description="control that the program is written for; auto takes the likeliest"
     )
     arc_centres: Literal["incremental", "absolute"] = Field(
         default="incremental",
@@ -61,6 +62,10 @@ class Program(Table):
     )
     compensation_startup: Literal["A", "B"] = Field(
         default="A", description="start-up and cancel type of cutter compensation on FANUC and Haas"
+    )
+    m_codes: dict[MCode, Literal["none"]] = Field(
+        default_factory=dict,
+        description='M codes of the machine builder, by number: { 72 = "none" } for one that moves nothing',
     )
 
 
@@ -311,6 +316,17 @@ class Job(JobFile):
         """
         simulation = checked(Simulation, {**self.simulation.model_dump(), **values}, "simulation", JobError)
         return self.model_copy(update={"simulation": simulation})
+
+    def with_program(self, **values: Any) -> Job:
+        """The same job with other values of its ``[program]`` table, e.g. ``tool=1``.
+
+        Raises:
+            JobError: wrong names or values; the message has every mistake.
+        """
+        program = checked(Program, {**self.program.model_dump(), **values}, "program", JobError)
+        if program.tool:
+            self.tool(program.tool)
+        return self.model_copy(update={"program": program})
 
     def without_forces(self) -> Job:
         """The same job without cutting coefficients."""

@@ -101,7 +101,7 @@ def _location(error: ErrorDetails) -> Location:
 def _problem(location: Location, error: ErrorDetails, model: type[BaseModel]) -> Problem:
     if error["loc"][-1] == "[key]":
         annotation, _ = _declared(location[:-1], model)
-        return unknown(location, get_args(get_args(annotation)[0]))
+        return _unknown_key(location, get_args(annotation)[0])
     if error["type"] == "extra_forbidden":
         table, _ = _declared(location[:-1], model)
         return unknown(location, table.model_fields)
@@ -114,6 +114,13 @@ def _problem(location: Location, error: ErrorDetails, model: type[BaseModel]) ->
     if error["type"] == "missing" and location == error["loc"]:
         return missing(location, expected)
     return wrong(location, error["input"], expected)
+
+
+def _unknown_key(location: Location, annotation: Any) -> Problem:
+    """A key that a table with free keys does not take: not one of several names, or not a number."""
+    if get_origin(bare(annotation)) is Literal:
+        return unknown(location, get_args(bare(annotation)))
+    return Problem(location, f": unknown key; expected {allowed(annotation)}")
 
 
 def _declared(location: Location, model: type[BaseModel]) -> tuple[Any, FieldInfo | None]:
@@ -151,7 +158,8 @@ def allowed(annotation: Any, notes: Iterable[Any] = ()) -> str:
     if origin is tuple:
         return _allowed_list(arguments)
     if origin is dict:
-        return "a table with keys " + ", ".join(get_args(arguments[0]))
+        keys = get_args(bare(arguments[0]))
+        return "a table with keys " + ", ".join(keys) if keys else "a table by number"
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return "a table with keys " + ", ".join(annotation.model_fields)
     if isinstance(annotation, type) and issubclass(annotation, PurePath):

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from gcode.dialects import dialect_named
 from gcode.events import Event, ToolChange
 from gcode.flow.interpreter import interpret
 from gcode.language.program import read_program
@@ -33,7 +32,7 @@ class ProgramMoves:
 
     Attributes:
         file: the NC program.
-        dialect: name of the control's dialect.
+        dialect: name of the control's dialect, or ``auto``.
         settings: the machine as the interpreter needs it.
         origin_mm: shape (3,), work offset in which the stock is given.
         tool_length_mm: by tool number.
@@ -58,7 +57,7 @@ class ProgramMoves:
         events = interpret(
             read_program(self.file),
             file=str(self.file),
-            dialect=dialect_named(self.dialect),
+            dialect=self.dialect,
             settings=self.settings,
         )
         return moves_from_nc(
@@ -94,7 +93,7 @@ class ProgramMoves:
                 if item.tool == 0 and not item.rapid and item.length_mm > 0.0:
                     raise ReplayError(
                         f"{self.file}:{item.nc_line}: feed motion without a tool in the spindle; "
-                        "expected a tool change (T.. M6) before it, or program.tool in the job"
+                        "expected a tool change (T.. M6) before it, program.tool in the job, or --tool N"
                     )
                 yield item.duration_s
 
@@ -149,4 +148,5 @@ def _machine_settings(
         search_path=tuple(program.search_path),
         decimal_point=program.decimal_point,
         compensation_startup=program.compensation_startup,
+        m_codes=program.m_codes,
     )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -19,6 +20,16 @@ class Engine(StrEnum):
 
     FAST = "fast"
     REFERENCE = "reference"
+
+
+class Dialect(StrEnum):
+    """Controls that a program is written for."""
+
+    FANUC = "fanuc"
+    HAAS = "haas"
+    LINUXCNC = "linuxcnc"
+    GRBL = "grbl"
+    AUTO = "auto"
 
 
 def replay(
@@ -51,6 +62,31 @@ def replay(
         Engine | None,
         typer.Option(help="Geometry engine: fast, or the slow reference; the job's if not given.", show_default=False),
     ] = None,
+    dialect: Annotated[
+        Dialect | None,
+        typer.Option(
+            help="Control that the program is written for; auto takes the likeliest; the job's if not given.",
+            show_default=False,
+        ),
+    ] = None,
+    tool: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=0,
+            help="Tool in the spindle when the program starts; the job's if not given.",
+            show_default=False,
+        ),
+    ] = None,
+    m_code: Annotated[
+        list[int] | None,
+        typer.Option(
+            metavar="N",
+            min=0,
+            help="Number of an M code of the machine builder that moves nothing; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
     threads: Annotated[
         int | None, typer.Option(min=1, max=64, help="Number of threads; all cores if not given.", show_default=False)
     ] = None,
@@ -69,6 +105,7 @@ def replay(
     job = load_job(job_file)
     job = job.without_forces() if no_forces else job
     job = job.with_simulation(store=engine.value) if engine is not None else job
+    job = job.with_program(**_program_values(dialect, tool, m_code, job.program.m_codes))
     mcap, rrd = mcap or job.output.mcap, rrd or job.output.rrd
     with opened(mcap, rrd, view=view, force=force, job=job.path) as write, progress(quiet=quiet or as_json) as line:
         outcome = replay_job(job, line, write, strict=strict, threads=threads)
@@ -78,6 +115,18 @@ def replay(
         _print_summary(outcome, {"archive": mcap, "recording": rrd}, job.output.force_on)
     _print_warnings(outcome)
     raise typer.Exit(_exit_code(outcome))
+
+
+def _program_values(
+    dialect: Dialect | None, tool: int | None, m_code: list[int] | None, known: Mapping[int, str]
+) -> dict[str, Any]:
+    """Values of the job's ``[program]`` table that options replace."""
+    values: dict[str, Any] = {"m_codes": {**known, **dict.fromkeys(m_code, "none")}} if m_code else {}
+    if dialect is not None:
+        values["dialect"] = dialect.value
+    if tool is not None:
+        values["tool"] = tool
+    return values
 
 
 def _print_json(outcome: Outcome, files: dict[str, Path | None], force_on: str) -> None:
