@@ -185,7 +185,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"cuttings": {}}, "cuttings: unknown key; did you mean cutting?"),
     (
         {"stock": 3},
-        "stock = 3: expected a table with keys box_mm, cylinder_mm, stl, stl_scale, offset_mm, wcs (the material "
+        "stock = 3: expected a table with keys box_mm, cylinder_mm, stl, unit, stl_scale, offset_mm, wcs (the material "
         "before the first cut)",
     ),
 ]

@@ -8,7 +8,8 @@ from typing import Annotated, TypeAlias
 import typer
 
 Part: TypeAlias = Annotated[
-    Path, typer.Argument(metavar="PART.stl", help="The part, a closed solid, mm.", show_default=False)
+    Path,
+    typer.Argument(metavar="PART.stl", help="The part, a closed solid; mm unless --unit is given.", show_default=False),
 ]
 SettingsFile: TypeAlias = Annotated[
     Path | None, typer.Option("--settings", metavar="FILE", help="TOML file with any of the parameters below.")

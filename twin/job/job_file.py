@@ -130,7 +130,8 @@ class Stock(Table):
     stl: FilePath | None = Field(
         default=None, description="STL file of a closed solid, relative to the job file's folder"
     )
-    stl_scale: float = Field(default=1.0, gt=0.0, description="length of one unit of the STL file, mm; 25.4 for inches")
+    unit: Literal["mm", "inch", "m"] = Field(default="mm", description="unit of the STL file")
+    stl_scale: float = Field(default=1.0, gt=0.0, description="further factor on the STL file's points")
     offset_mm: Point = Field(default=(0.0, 0.0, 0.0), description="shift of the STL file's points after scaling, mm")
     wcs: WorkOffset = Field("G54", description="work offset in which the stock's coordinates are given")
 

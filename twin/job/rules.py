@@ -14,7 +14,7 @@ from twin.settings.problems import Problem, wrong
 
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
 
-_MESH_ONLY = ("stl_scale", "offset_mm")
+_MESH_ONLY = ("unit", "stl_scale", "offset_mm")
 #: More slices than this in all are taken for a misplaced decimal point.
 _MOST_SLICES = 1_000_000
 #: Angles to propose in place of one that does not divide a turn.

@@ -12,13 +12,15 @@ from twin.cam.passes.roughing import StageFeeds
 from twin.cam.path.machining_time import Dynamics
 from twin.job.job_file import Box, Tool
 from twin.settings.table import FilePath, Key, Point, Table
+from twin.workpiece.units import Unit
 
 
 class Part(Table):
     """The part to be made."""
 
     stl: FilePath = Field(description="STL file of a closed solid, relative to the job file's folder")
-    scale: float = Field(default=1.0, gt=0.0, description="mm per unit of the STL file, 25.4 for inches")
+    unit: Unit = Field(default="mm", description="unit of the STL file; auto: the one in which its size is plausible")
+    scale: float = Field(default=1.0, gt=0.0, description="further factor on the STL file's points")
     offset_mm: Point = Field(default=(0.0, 0.0, 0.0), description="added to the STL file's points after scaling, mm")
 
 
@@ -191,6 +193,10 @@ class MoldJob(MoldFile):
     def with_folder(self, folder: Path) -> MoldJob:
         """The same job with its programs in another folder."""
         return self.model_copy(update={"output": self.output.model_copy(update={"folder": folder})})
+
+    def with_unit(self, unit: Unit) -> MoldJob:
+        """The same job with another unit of its STL file."""
+        return self.model_copy(update={"part": self.part.model_copy(update={"unit": unit})})
 
     def tool_of(self, stage: StageTable) -> Tool:
         """The tool of a stage."""

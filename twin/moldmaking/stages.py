@@ -28,7 +28,8 @@ from twin.moldmaking.load import shape_of
 from twin.moldmaking.model import LevelStage, MoldJob, StageTable
 from twin.planning.paths import Progress, silent
 from twin.tools.shape import ToolShape
-from twin.workpiece.from_mesh import load_mesh
+from twin.workpiece.from_mesh import Solid, load_mesh
+from twin.workpiece.units import TOOL_DIAMETERS, size_doubts
 
 Stage: TypeAlias = Literal["rough", "semi", "finish"]
 STAGES: tuple[Stage, ...] = ("rough", "semi", "finish")
@@ -98,11 +99,19 @@ class MoldPlan:
         self._progress = progress
         progress("reading the part", 0.0)
         begin = time.perf_counter()
-        self.part = load_mesh(job.part.stl, scale=job.part.scale, offset_mm=job.part.offset_mm)
+        self.part = self._part()
         self.surface = surface_of_mesh(self.part.vertices_mm, self.part.triangles)
         self.space = self._workspace()
         self.read_s = time.perf_counter() - begin
         self._cutters: dict[int, DropCutter] = {}
+
+    def _part(self) -> Solid:
+        """The part; a unit that is not known is the one in which it is most like the stock, or a typical part."""
+        part, box = self.job.part, self.job.stock.box_mm
+        like = TOOL_DIAMETERS * max(tool.diameter_mm for tool in self.job.tools)
+        if box is not None:
+            like = float(np.ptp(np.array([box.min, box.max]), axis=0).max())
+        return load_mesh(part.stl, unit=part.unit, scale=part.scale, offset_mm=part.offset_mm, like_mm=like)
 
     def _workspace(self) -> Workspace:
         box = self.job.stock.box_mm
@@ -303,8 +312,10 @@ class MoldPlan:
         )
 
     def warnings(self, stages: tuple[Stage, ...] = STAGES) -> list[str]:
-        """Warnings: undercuts, shank or holder that would touch the part, depths of cut beyond the flute length."""
-        found = list(checks.undercut_warnings(self.part))
+        """Warnings: doubts about the unit, undercuts, contact of shank or holder, depths beyond the flute length."""
+        smallest = min(self.job.tool_of(getattr(self.job, name)).diameter_mm for name in stages)
+        found = [*self.part.notes, *size_doubts(self.part.name, self.part.box_mm, tool_mm=smallest)]
+        found += checks.undercut_warnings(self.part)
         for name in stages:
             table = getattr(self.job, name)
             tool = self.job.tool_of(table)

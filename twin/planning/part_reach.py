@@ -22,6 +22,7 @@ from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
 from twin.workpiece.from_mesh import load_mesh
 from twin.workpiece.mesh_file import write_mesh
+from twin.workpiece.units import TOOL_DIAMETERS, TYPICAL_MM, size_doubts
 
 #: The default pitch divides the part's longest side into this many slices.
 _SLICES_ALONG = 600
@@ -46,9 +47,11 @@ class PartReach:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings of tools where uncut material as thin as requested cannot be resolved by the slices."""
-        thin = self.settings.thin_mm
-        return tuple(
+        """Warnings: doubts about the unit, and tools where material as thin as requested cannot be resolved."""
+        thin, mesh = self.settings.thin_mm, self.part.mesh
+        smallest = min((2.0 * parse_tool(text).nominal_radius_mm for text in self.settings.tools), default=None)
+        doubts = (*mesh.notes, *size_doubts(mesh.name, mesh.box_mm, tool_mm=smallest))
+        return doubts + tuple(
             f"{text}: slices {found.pitch_mm:.4g} mm apart may show uncut material up to {bound:.3g} mm thick where "
             f"there is none; for {thin:g} mm expected a pitch of at most {thin:.3g} mm"
             for text, found in self.tools.items()
@@ -124,7 +127,8 @@ def reach(
     if not shapes and not settings.largest:
         raise ToolError('no tool; expected --tool "ball 8", or --largest')
     progress("slicing", 0.0)
-    mesh = load_mesh(part)
+    diameters = [2.0 * shape.nominal_radius_mm for shape in shapes.values()]
+    mesh = load_mesh(part, unit=settings.unit, like_mm=TOOL_DIAMETERS * max(diameters) if diameters else TYPICAL_MM)
     longest = float((mesh.vertices_mm.max(axis=0) - mesh.vertices_mm.min(axis=0)).max())
     sliced = slice_part(mesh, longest / _SLICES_ALONG if settings.pitch_mm is None else settings.pitch_mm)
     tools: dict[str, Reach] = {}

@@ -37,6 +37,8 @@ from twin.geometry.polygons.region import Region
 from twin.planning.settings import PathSettings
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
+from twin.workpiece.from_mesh import Solid, load_mesh
+from twin.workpiece.units import TOOL_DIAMETERS
 
 #: Called while work goes on: the current task, and the share of it that is done, 0 to 1.
 Progress: TypeAlias = Callable[[str, float], None]
@@ -106,7 +108,7 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, progress: Pro
     tool = parse_tool(settings.tool)
     _check_tool(settings, tool)
     progress("slicing", 0.0)
-    sliced = part if isinstance(part, SlicedPart) else slice_part(part, settings.pitch_mm)
+    sliced = part if isinstance(part, SlicedPart) else slice_part(_mesh(settings, part, tool), settings.pitch_mm)
     box = np.array([sliced.slices.low_mm, sliced.slices.high_mm])
     stock = np.reshape(settings.stock_mm, (2, 3)) if settings.stock_mm else box
     scan = settings.strategy == "scan"
@@ -129,6 +131,14 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, progress: Pro
         floor_mm=float(box[0, 2]) if settings.floor_z_mm is None else settings.floor_z_mm,
         safe_mm=safe,
     )
+
+
+def _mesh(settings: PathSettings, part: Path | str, tool: ToolShape) -> Solid:
+    """The part from its file; unit auto is the one in which it is most like the stock, or a typical part."""
+    like = TOOL_DIAMETERS * 2.0 * tool.nominal_radius_mm
+    if settings.stock_mm is not None:
+        like = float(np.ptp(np.reshape(settings.stock_mm, (2, 3)), axis=0).max())
+    return load_mesh(part, unit=settings.unit, like_mm=like)
 
 
 def _sections(settings: PathSettings, part: SlicedPart, tool: ToolShape) -> Sections:

@@ -21,6 +21,7 @@ from twin.planning.paths import PlanSetup, Progress, plan, prepare, silent
 from twin.planning.replay_job import replay_tables, write_replay_job
 from twin.planning.settings import PathSettings
 from twin.settings.check import changed
+from twin.workpiece.units import size_doubts
 
 #: Rapid traverse rate for the machining time, mm/min.
 RAPID_MM_MIN = 10_000.0
@@ -53,11 +54,13 @@ class PlannedPath:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings where the path gouges the part, or its slices may be too far apart for the required accuracy."""
+        """Warnings: doubts about the unit, gouges of the path, slices that may be too far apart for the accuracy."""
         return tuple(self._warnings())
 
     def _warnings(self) -> Iterator[str]:
-        settings, found = self.settings, self.gouge
+        settings, found, mesh = self.settings, self.gouge, self.setup.part.mesh
+        yield from mesh.notes
+        yield from size_doubts(mesh.name, mesh.box_mm, tool_mm=2.0 * self.setup.tool.nominal_radius_mm)
         other = "; --exact makes rows from the triangles instead" if settings.strategy == "scan" else ""
         if found is not None:
             x, y, z = found.point_mm

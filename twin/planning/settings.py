@@ -7,6 +7,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import Field, Strict, model_validator
 
 from twin.settings.table import Key, Table
+from twin.workpiece.units import Unit
 
 Corners: TypeAlias = Annotated[tuple[float, float, float, float], Strict(False)]
 BoxCorners: TypeAlias = Annotated[tuple[float, float, float, float, float, float], Strict(False)]
@@ -17,6 +18,7 @@ class PathSettings(Table):
 
     strategy: Literal["contour", "scan"] = Field(description="contour: levels of constant height; scan: parallel rows")
     tool: Annotated[str, Key(metavar="TOOL")] = Field(description="tool: 'ball 8', 'flat 10', 'bull 12 r2'")
+    unit: Unit = Field(default="mm", description="unit of the STL file; auto: the one in which its size is plausible")
     pitch_mm: float = Field(default=0.1, gt=0.0, description="distance between the part's slices")
     tolerance_mm: float = Field(
         default=0.02, gt=0.0, description="required accuracy; a pitch that may be too coarse for it gives a warning"
@@ -127,6 +129,7 @@ class ReachSettings(Table):
     tools: Annotated[
         tuple[str, ...], Strict(False), Key(options=("--tool",), metavar="TOOL", unset="none, if `largest` is set")
     ] = Field(default=(), description="tools: 'ball 8', 'flat 10', 'bull 12 r2'")
+    unit: Unit = Field(default="mm", description="unit of the STL file; auto: the one in which its size is plausible")
     pitch_mm: Annotated[float | None, Key(unset="longest side / 600")] = Field(
         default=None, gt=0.0, description="largest distance between the part's slices"
     )

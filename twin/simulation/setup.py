@@ -21,7 +21,7 @@ from twin.simulation.recorder import Recorder
 from twin.simulation.solve import StepSolver
 from twin.simulation.tools import ToolSetup, tool_setup
 from twin.tolerance import Tolerance
-from twin.workpiece.from_mesh import load_mesh, mesh_slices
+from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
 from twin.workpiece.stock import SliceSet, box_slices, cylinder_slices
 from twin.workpiece.trislice import CellSlices, PolygonSlices
 
@@ -125,5 +125,18 @@ def stock_slices(stock: Stock, pitch_mm: float) -> SliceSet:
         return cylinder_slices(
             centre_mm=c.centre, diameter_mm=c.diameter, axis=c.axis, low_mm=c.min, high_mm=c.max, pitch_mm=pitch_mm
         )
+    return mesh_slices(_stock_mesh(stock), pitch_mm)
+
+
+def stock_length_mm(stock: Stock) -> float:
+    """Longest side of a stock's box."""
+    if stock.box_mm is not None:
+        return float(np.ptp(np.array([stock.box_mm.min, stock.box_mm.max]), axis=0).max())
+    if stock.cylinder_mm is not None:
+        return max(stock.cylinder_mm.diameter, stock.cylinder_mm.max - stock.cylinder_mm.min)
+    return float(np.ptp(_stock_mesh(stock).box_mm, axis=0).max())
+
+
+def _stock_mesh(stock: Stock) -> Solid:
     assert stock.stl is not None
-    return mesh_slices(load_mesh(stock.stl, scale=stock.stl_scale, offset_mm=stock.offset_mm), pitch_mm)
+    return load_mesh(stock.stl, unit=stock.unit, scale=stock.stl_scale, offset_mm=stock.offset_mm)

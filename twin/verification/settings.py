@@ -7,11 +7,13 @@ from typing import Annotated
 from pydantic import Field, Strict, model_validator
 
 from twin.settings.table import Key, Table
+from twin.workpiece.units import Unit
 
 
 class VerifySettings(Table):
     """Tolerances and extent of a verification; lengths in mm."""
 
+    unit: Unit = Field(default="mm", description="unit of the STL file; auto: the one in which its size is plausible")
     tolerance_mm: float = Field(default=0.02, gt=0.0, description="permitted depth of gouges")
     excess_mm: Annotated[float | None, Key(unset="the tolerance")] = Field(
         default=None, gt=0.0, description="permitted height of excess material, e.g. allowance and scallops"

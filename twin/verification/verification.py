@@ -9,10 +9,12 @@ from typing import Any
 from twin.job import Job, load_job
 from twin.record import Collision
 from twin.settings.check import changed
+from twin.simulation.setup import stock_length_mm
 from twin.verification.deviation import Deviation, Limits, deviation
 from twin.verification.machining import At, Begin, machined
 from twin.verification.settings import VerifySettings
 from twin.workpiece.from_mesh import Solid, load_mesh
+from twin.workpiece.units import size_doubts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -24,12 +26,14 @@ class Verification:
         design: the design.
         deviation: deviation of the machined surface, with gouges, excess and regions out of tolerance.
         collisions: collisions of the job's program.
+        warnings: doubts about the unit of the design.
     """
 
     settings: VerifySettings
     design: Solid
     deviation: Deviation
     collisions: tuple[Collision, ...]
+    warnings: tuple[str, ...] = ()
 
     @property
     def within_tolerance(self) -> bool:
@@ -64,7 +68,8 @@ def verify(
         >>> verify("part.toml", "part.stl", tolerance_mm=0.02).deviation.worst_gouge_mm
     """
     settings = changed(VerifySettings, settings, values, "verify")
-    job, design = job if isinstance(job, Job) else load_job(job), load_mesh(part)
+    job = job if isinstance(job, Job) else load_job(job)
+    design = load_mesh(part, unit=settings.unit, like_mm=stock_length_mm(job.stock) if settings.unit == "auto" else 1.0)
     if settings.pitch_mm is not None:
         job = job.with_simulation(slice_pitch_mm=settings.pitch_mm)
     store, collisions = machined(job, begin=begin, at=at)
@@ -75,4 +80,13 @@ def verify(
         excess_mm=settings.excess_mm,
         limits=Limits.of(design, settings.region_mm),
     )
-    return Verification(settings=settings, design=design, deviation=found, collisions=collisions)
+    smallest = min(tool.diameter_mm for tool in job.tools)
+    length = float((store.high_mm - store.low_mm).max())
+    doubts = size_doubts(design.name, design.box_mm, tool_mm=smallest, stock_mm=length)
+    return Verification(
+        settings=settings,
+        design=design,
+        deviation=found,
+        collisions=collisions,
+        warnings=(*design.notes, *doubts),
+    )

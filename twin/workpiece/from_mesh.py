@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from twin.workpiece.solid_check import check_closed, check_orientation
 from twin.workpiece.stl_file import stl_corners
 from twin.workpiece.stock import SliceSet, even_pitch, plane_counts, plane_positions
 from twin.workpiece.store import PLANE_AXES
+from twin.workpiece.units import TYPICAL_MM, UNITS_MM, unit_of
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
@@ -33,12 +34,14 @@ class Solid:
         vertices_mm: shape (n, 3), rounded to 1e-5 mm, no two equal.
         triangles: shape (m, 3), counter-clockwise seen from outside, no corner twice.
         edges: the edges of the triangles.
+        notes: what was assumed or mended when it was read, for the user.
     """
 
     name: str
     vertices_mm: FloatArray
     triangles: NDArray[np.int64]
     edges: MeshEdges
+    notes: tuple[str, ...] = ()
 
     @property
     def used(self) -> NDArray[np.bool_]:
@@ -66,12 +69,21 @@ class Solid:
         return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
 
 
-def load_mesh(path: Path | str, *, scale: float = 1.0, offset_mm: ArrayLike = (0.0, 0.0, 0.0)) -> Solid:
+def load_mesh(
+    path: Path | str,
+    *,
+    unit: str = "mm",
+    scale: float = 1.0,
+    offset_mm: ArrayLike = (0.0, 0.0, 0.0),
+    like_mm: float = TYPICAL_MM,
+) -> Solid:
     """Read a binary or ASCII STL file and check that it is a solid.
 
     Args:
-        scale: mm a unit of the file, e.g. 25.4 for inches.
+        unit: of the file: ``mm``, ``inch``, ``m``, or ``auto`` for the one in which the part is most like ``like_mm``.
+        scale: further factor on the file's points.
         offset_mm: shape (3,), added after scaling.
+        like_mm: length that the part's longest side should be comparable with.
 
     Raises:
         MeshError: no such file, no STL, or no solid; see `solid`.
@@ -83,7 +95,9 @@ def load_mesh(path: Path | str, *, scale: float = 1.0, offset_mm: ArrayLike = (0
     if not (np.isfinite(scale) and scale > 0.0):
         raise MeshError(f"{path}: scale {scale:g}; expected a number above 0")
     corners = stl_corners(str(path), data)
-    return solid(corners * scale + frozen(offset_mm, "offset_mm", (3,)), str(path))
+    own, notes = unit_of(str(path), unit, corners * scale, like_mm)
+    made = solid(corners * (scale * UNITS_MM[own]) + frozen(offset_mm, "offset_mm", (3,)), str(path))
+    return replace(made, notes=notes + made.notes) if notes else made
 
 
 def solid(corners_mm: ArrayLike, name: str) -> Solid:

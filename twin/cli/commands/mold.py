@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from twin.cli.common import Force, Json, Quiet, Recording
+from twin.workpiece.units import Unit
 
 if TYPE_CHECKING:
     from twin.moldmaking.result import Mold
@@ -29,14 +30,18 @@ def mold(
         Path | None, typer.Option(metavar="DIR", help="Draw paths and rest material of each stage here.")
     ] = None,
     rrd: Recording = None,
+    unit: Annotated[
+        Unit | None,
+        typer.Option(help="Unit of the STL file; auto: a plausible one.", show_default="part.unit of the job"),
+    ] = None,
     force: Force = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Machine a mold from its STL file: roughing, semi-finishing of rest material, finishing; one program per stage.
 
-    All parameters are keys of the mold job file (docs/mold.md); options cannot set them, since stages and
-    tools are tables.
+    All parameters are keys of the mold job file (docs/mold.md). Options cannot set them, except part.unit and
+    output.folder, since stages and tools are tables.
     """
     from twin.cli.console import say_json, warn
     from twin.cli.show.mold_tables import mold_json, print_mold
@@ -48,6 +53,7 @@ def mold(
 
     job = load_mold(job_file)
     job = job.with_folder(out) if out is not None else job
+    job = job.with_unit(unit) if unit is not None else job
     check_outputs({"recording": rrd}, force=force)
     refuse_existing(program_paths(job, STAGES if stage is None else (stage,)).values(), force=force)
     with working(quiet=quiet or as_json, even=True) as progress:

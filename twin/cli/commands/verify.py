@@ -22,7 +22,7 @@ def verify(
     job_file: Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML).", show_default=False)],
     part: Annotated[
         Path,
-        typer.Argument(metavar="PART.stl", help="The design, in the stock's coordinates, mm.", show_default=False),
+        typer.Argument(metavar="PART.stl", help="The design, in the stock's coordinates.", show_default=False),
     ],
     given: Mapping[str, Any],
     settings: SettingsFile = None,
@@ -36,7 +36,7 @@ def verify(
 
     Ends with exit code 4 if a gouge is deeper than the tolerance or the excess is more than permitted.
     """
-    from twin.cli.console import say_json
+    from twin.cli.console import say_json, warn
     from twin.cli.show.progress import progress
     from twin.cli.show.verify_tables import deviation_json, print_deviation
     from twin.planning.output_files import check_outputs
@@ -47,6 +47,8 @@ def verify(
     tolerances = settings_from_file(VerifySettings, given, settings, "twin verify")
     with progress(quiet=quiet or as_json) as line:
         found = verified(job_file, part, tolerances, begin=line.start, at=line.at)
+    for warning in found.warnings:
+        warn(warning)
     _draw(found, plot, rrd, f"{job_file.name} compared with {part.name}", force=force)
     if as_json:
         say_json(deviation_json(found, {"job": job_file, "part": part, **files}))

@@ -104,6 +104,7 @@ def deviation_json(verification: Verification, files: Mapping[str, Path | None])
         "places": [_region_values(region) for region in found.regions[:_MOST]],
         "place_count": len(found.regions),
         "collisions": [c.message for c in verification.collisions],
+        "warnings": list(verification.warnings),
         **{kind: None if path is None else str(path) for kind, path in files.items()},
     }
     return json.dumps(values, indent=2, ensure_ascii=False)
