@@ -158,7 +158,7 @@ def _from_column(
 ) -> tuple[FloatArray, float, np.ndarray[tuple[int], np.dtype[np.bool_]], list[str]]:
     """Times from a column, in s."""
     base, unit = split_unit(table.names[at])
-    unit = unit or table.units[at]
+    unit = "s" if at == table.clock else unit or table.units[at]
     known = find_unit(unit) if unit else ("time", 1.0)
     if known is None or known[0] != "time":
         raise MeasuredError(f"{path}: time column {table.names[at]!r} is in {unit!r}, expected s, ms, us, ns or min")

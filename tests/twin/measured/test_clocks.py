@@ -152,6 +152,18 @@ def test_a_time_that_cannot_be_read_is_named(tmp_path: Path) -> None:
         read(tmp_path, f"{text}\nnoon;1;2;3\n10:01:00.0;1;2;3\n")
 
 
-@pytest.mark.parametrize("text", ["10:30", "13:00:00 PM", "31.31.2020 10:00:00", "1.5", "abc", "2020-01-02x", "1-2"])
+@pytest.mark.parametrize("text", ["13:00:00 PM", "31.31.2020 10:00:00", "1.5", "abc", "2020-01-02x", "1-2"])
 def test_other_texts_are_no_moments(text: str) -> None:
     assert moment(text) is None
+
+
+@pytest.mark.parametrize(("name", "step_s"), [("Time [mm:ss]", 1.0), ("Time (h:mm)", 60.0)])
+def test_two_numbers_with_a_colon_need_a_name_that_shows_what_they_are(
+    name: str, step_s: float, tmp_path: Path
+) -> None:
+    rows = "".join(f"59:{50 + k};{k};1;2\n" if k < 10 else f"00:{k - 10:02d};{k};1;2\n" for k in range(14))
+    rows = rows if step_s == 1.0 else rows.replace("59:", "23:")
+    log = read(tmp_path, f"{name};Fx;Fy;Fz\n{rows}")
+    np.testing.assert_allclose(log.t_s, step_s * np.arange(14))
+    with pytest.raises(MeasuredError, match=r"not read: Time \('(59|23):50' in line 2: mm:ss or hh:mm\? name it"):
+        read(tmp_path, f"Time;Fx;Fy;Fz\n{rows}")

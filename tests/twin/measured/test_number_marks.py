@@ -36,15 +36,14 @@ def log_text(delimiter: str, group: str, decimal: str, *, digits: int = 3, quote
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("delimiter", [";", "\t", "|", ","])
+PAIRS = [(g, d) for d in ".," for g in (".", ",", " ", "\u00a0", "\u202f", "\u2009", "'", "\u2019") if g != d]
+
+
 @pytest.mark.parametrize(
-    ("group", "decimal"),
-    [(g, d) for d in ".," for g in (".", ",", " ", "\u00a0", "\u202f", "\u2009", "'", "\u2019") if g != d],
+    ("delimiter", "group", "decimal"), [(t, g, d) for t in (";", "\t", "|", ",") for g, d in PAIRS if t != d]
 )
 def test_every_pair_of_marks(delimiter: str, group: str, decimal: str, tmp_path: Path) -> None:
-    quoted = delimiter in (group, decimal)
-    if delimiter == decimal:
-        pytest.skip("a comma as delimiter and decimal mark")
+    quoted = delimiter == group
     log = read(tmp_path, log_text(delimiter, group, decimal, quoted=quoted))
     np.testing.assert_allclose(log.force_n, FORCES, atol=1e-9)
 
@@ -117,3 +116,15 @@ def test_a_point_in_a_file_with_decimal_commas_is_named(tmp_path: Path) -> None:
     rows = "".join(f"0,00{k};1,5;-280,25;80\n" for k in range(4))
     with pytest.raises(MeasuredError, match=r"log.csv:6: '12.5' is not a number, .* \(field 2 of 4, Fx\)"):
         read(tmp_path, f"Zeit [s];Fx;Fy;Fz\n{rows}0,004;12.5;1;1\n0,005;1;1;1\n")
+
+
+@pytest.mark.parametrize(
+    ("stated", "decimal"),
+    [
+        *((text, ",") for text in ("10.000 Hz", "10.000,00 Hz", "10000 Hz", "10 000,0 Hz", "10 kHz", "10,0 kHz")),
+        *((text, ".") for text in ("10,000 Hz", "10,000.0 Hz", "10'000 Hz", "10.0 kHz", "1e4 Hz")),
+    ],
+)
+def test_rates_above_the_columns_have_the_marks_of_the_numbers_below(stated: str, decimal: str, tmp_path: Path) -> None:
+    rows = "".join(f"{k}.5;1.25;0.2\n".replace(".", decimal) for k in range(4))
+    assert read(tmp_path, f"Sampling rate: {stated}\nFx;Fy;Fz\n{rows}").rate_hz == 10_000.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,13 @@ from twin.measured.text.layout import Layout, fields_of
 _LONGEST = 60
 #: Most line numbers that a note lists.
 _MOST_LISTED = 5
+
+
+def _two_numbers(name: str) -> tuple[ClockKind, float | None]:
+    """Kind and size in s of times such as 10:30, by the column's name; None where it does not show."""
+    if re.search(r"m+:s+", name, re.IGNORECASE):
+        return "minutes", 1.0
+    return "time", 60.0 if re.search(r"h+:m+", name, re.IGNORECASE) else None
 
 
 def cut(line: str) -> str:
@@ -158,6 +165,11 @@ class Body:
         if not timed or not rows:
             return None, []
         at, kind = timed[0], kinds[timed[0]]
+        if kind == "minutes" and not any(m.clear for row in rows if (m := row[at]) is not None):
+            kind, size = _two_numbers(names[at])
+            if size is None:
+                return None, []
+            rows = [[None if m is None else replace(m, seconds=size * m.seconds) for m in row] for row in rows]
         dated = kinds.index("date") if "date" in kinds and kind == "time" else at
         dates = [m.date if (m := row[dated]) is not None else "" for row in rows]
         seconds = np.array([m.seconds if (m := row[at]) is not None else math.nan for row in rows])

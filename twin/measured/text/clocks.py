@@ -35,7 +35,7 @@ _DATE = (
     rf"\d{{1,2}}[-\s./]+{_WORD}[-\s./,]+\d{{4}}|{_WORD}[-\s.]+\d{{1,2}}[-\s,]+\d{{4}}|\d{{4}}[-\s]+{_WORD}[-\s]+\d{{1,2}})"
 )
 _TIME_ONLY = re.compile(rf"{_TIME}$")
-_SHORT = re.compile(r"(?P<m>\d{1,3}):(?P<s>\d{2})[.,](?P<f>\d+)$")
+_SHORT = re.compile(r"(?P<m>\d{1,3}):(?P<s>\d{2})(?:[.,](?P<f>\d+))?$")
 _DATE_ONLY = re.compile(rf"{_DATE}$")
 _STAMP = re.compile(rf"{_DATE}(?:T|[\s,_]+){_TIME}$")
 _TIME_FIRST = re.compile(rf"{_TIME}[\s,]+{_DATE}$")
@@ -46,11 +46,16 @@ ClockKind: TypeAlias = Literal["date", "time", "stamp", "minutes"]
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A field that is a date, a time, or both: the date as written, and the seconds of the day or hour."""
+    """A field that is a date, a time, or both: the date as written, and the seconds of the day or hour.
+
+    Attributes:
+        clear: False for two numbers that may be minutes and seconds or hours and minutes, ``10:30``.
+    """
 
     kind: ClockKind
     date: str
     seconds: float
+    clear: bool = True
 
 
 def moment(text: str) -> Moment | None:
@@ -61,7 +66,9 @@ def moment(text: str) -> Moment | None:
         if found := _STAMP.match(text) or _TIME_FIRST.match(text):
             return _moment("stamp", found["date"], found)
         if found := _SHORT.match(text):
-            return Moment("minutes", "", 60.0 * int(found["m"]) + float(f"{found['s']}.{found['f']}"))
+            return Moment(
+                "minutes", "", 60.0 * int(found["m"]) + float(f"{found['s']}.{found['f'] or 0}"), bool(found["f"])
+            )
         return None
     found = _DATE_ONLY.match(text)
     return Moment("date", found["date"], 0.0) if found is not None and any(_readings(found["date"])) else None

@@ -10,19 +10,19 @@ from pathlib import Path
 from twin.errors import MeasuredError
 from twin.measured.table import distinct
 from twin.measured.text.layout import Layout, fields_of
+from twin.measured.text.marks import Marks, other
 from twin.measured.units import find_unit, is_unit_text
 
+_VALUE = r"\"?(?P<value>\d(?:[\d.,]|['\u2019\u00a0\u202f ](?=\d{3}))*(?:e[+-]?\d+)?)\"?"
 _RATE = re.compile(
     r"(?:sampl\w*[\s_-]*(?:rate|freq\w*)|sample[\s_-]*rate|samples?[/ ]s(?:ec\w*)?|abtastrate|abtastfrequenz|"
     r"scan[\s_-]*rate|acquisition[\s_-]*rate|\bfs\b|\brate\b)"
-    r"\s*[\[(]?\s*(?P<unit1>k?hz|s/s)?\s*[\])]?\s*[:=,;\t ]+\s*\"?(?P<value>\d[\d.,]*(?:e[+-]?\d+)?)\"?\s*"
-    r"(?P<unit2>k?hz|s/s)?",
+    rf"\s*[\[(]?\s*(?P<unit1>k?hz|s/s)?\s*[\])]?\s*[:=,;\t ]+\s*{_VALUE}\s*(?P<unit2>k?hz|s/s)?",
     re.IGNORECASE,
 )
 _INTERVAL = re.compile(
     r"(?:sampl\w*[\s_-]*(?:interval|period|time)|delta[\s_-]*x|delta[\s_-]*t|\bdt\b|increment)"
-    r"\s*[\[(]?\s*(?P<unit1>[mun]?s(?:ec)?)?\s*[\])]?\s*[:=,;\t ]+\s*\"?(?P<value>\d[\d.,]*(?:e[+-]?\d+)?)\"?\s*"
-    r"(?P<unit2>[mun]?s(?:ec)?)?",
+    rf"\s*[\[(]?\s*(?P<unit1>[mun]?s(?:ec)?)?\s*[\])]?\s*[:=,;\t ]+\s*{_VALUE}\s*(?P<unit2>[mun]?s(?:ec)?)?",
     re.IGNORECASE,
 )
 _COMMENT = re.compile(r"^\s*(?:#+|%+|//+|!+|;+|')\s*")
@@ -121,28 +121,29 @@ def _is_rate_line(row: Sequence[str]) -> bool:
     return ":" in text or "=" in text or _RATE.search(text) is not None or _INTERVAL.search(text) is not None
 
 
-def stated_rate_hz(lines: Sequence[str]) -> float | None:
-    """A sampling rate, or the inverse of an interval, stated in words above the numbers."""
+def stated_rate_hz(lines: Sequence[str], marks: Marks) -> float | None:
+    """A sampling rate, or the inverse of an interval, stated in words above the numbers.
+
+    Args:
+        marks: of the numbers below.
+    """
     for line in lines:
         if found := _RATE.search(line):
             scale = 1e3 if (found["unit1"] or found["unit2"] or "").lower() == "khz" else 1.0
-            value = _value(found["value"])
+            value = _value(found["value"], marks)
             if value:
                 return scale * value
     for line in lines:
         if found := _INTERVAL.search(line):
             known = find_unit(found["unit1"] or found["unit2"] or "s")
-            value = _value(found["value"])
+            value = _value(found["value"], marks)
             if value and known is not None and known[0] == "time":
                 return 1.0 / (value * known[1])
     return None
 
 
-def _value(text: str) -> float | None:
+def _value(text: str, marks: Marks) -> float | None:
+    """A number with the marks of the numbers below, or, if it is none then, with the other ones."""
     text = text.rstrip(".,")
-    if "," in text:
-        text = text.replace(",", "" if re.fullmatch(r"\d{1,3}(,\d{3})+(\.\d+)?", text) else ".")
-    try:
-        return float(text)
-    except ValueError:
-        return None
+    value = Marks(marks.decimal, True).number(text)
+    return Marks(other(marks.decimal), True).number(text) if value is None else value

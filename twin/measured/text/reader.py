@@ -88,21 +88,26 @@ def parse_text(
         values=values,
         rows=read.rows,
         row_word="line",
-        rate_hz=stated_rate_hz(lines[: layout.first]),
+        rate_hz=stated_rate_hz(lines[: layout.first], layout.marks),
         named=header.named,
         clock=None if read.clock is None else len(names) - 1,
         notes=(_layout_note(layout), *read.notes),
-        not_read=tuple(_not_read(lines, layout, header, first_line)),
+        not_read=tuple(_not_read(lines, layout, header, first_line, read.clock is None)),
     )
     return scaled(found, lines[: layout.first])
 
 
-def _not_read(lines: Sequence[str], layout: Layout, header: Header, first_line: int) -> Iterator[str]:
-    """Columns of text, each with its first field and line."""
+def _not_read(lines: Sequence[str], layout: Layout, header: Header, first_line: int, timeless: bool) -> Iterator[str]:
+    """Columns of text, and of moments that make no time, each with its first field and line."""
     fields = fields_of(lines[layout.first], layout.delimiter)
     for name, kind, text in zip(header.names, layout.kinds, fields, strict=False):
+        where = f"{cut(text)!r} in line {layout.first + first_line}"
         if kind == "text":
-            yield f"{name} (text, {cut(text)!r} in line {layout.first + first_line})"
+            yield f"{name} (text, {where})"
+        elif kind == "minutes" and timeless:
+            yield f"{name} ({where}: mm:ss or hh:mm? name it '{name} [mm:ss]' by --columns)"
+        elif kind == "date" and timeless:
+            yield f"{name} ({where}: a date without a time)"
 
 
 def _no_rows(path: Path, lines: Sequence[str]) -> MeasuredError:
