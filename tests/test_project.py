@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+import twin.jit
 from twin.cli.app import app
 from twin.job import JobFile
 
@@ -59,6 +60,27 @@ def imported(path: Path) -> Iterator[str]:
             yield node.module
 
 
+def decorated(function: ast.FunctionDef, *names: str) -> bool:
+    return any(isinstance(d, ast.Name) and d.id in names for d in function.decorator_list)
+
+
+def names_used_from_modules(path: Path) -> set[str]:
+    """Full names of what a file imports, and of the attributes of that."""
+    tree = ast.parse(path.read_text())
+    imports = {
+        alias.asname or alias.name: f"{node.module}.{alias.name}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    attributes = {
+        f"{imports[node.value.id]}.{node.attr}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in imports
+    }
+    return attributes.union(imports.values())
+
+
 def words_of(path: Path) -> set[str]:
     return set(re.findall(r"[A-Za-z_]\w*", path.read_text()))
 
@@ -83,10 +105,23 @@ def test_kernels_have_at_most_eight_parameters() -> None:
         for path in SOURCES
         for node in ast.walk(ast.parse(path.read_text()))
         if isinstance(node, ast.FunctionDef)
-        and any("njit" in ast.unparse(d) for d in node.decorator_list)
+        and decorated(node, *twin.jit.__all__)
         and len([*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]) > MOST_PARAMETERS
     }
     assert wide == set()
+
+
+def test_only_kernels_use_helpers_of_kernels() -> None:
+    helpers = {
+        f"{module(path)}.{node.name}"
+        for path in SOURCES
+        if is_kernels(path)
+        for node in ast.parse(path.read_text()).body
+        if isinstance(node, ast.FunctionDef) and decorated(node, "helper", "inlined")
+    }
+    assert helpers
+    used = {name(path): sorted(helpers & names_used_from_modules(path)) for path in PYTHON if not is_kernels(path)}
+    assert {file: names for file, names in used.items() if names} == {}
 
 
 def test_numba_has_one_door() -> None:

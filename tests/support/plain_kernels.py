@@ -35,7 +35,7 @@ called: set[str] = set()
 
 
 def njit(function: Callable[..., Any]) -> Callable[..., Any]:
-    """In the place of `twin.jit.njit`: the function, which notes that it was called."""
+    """In the place of the decorators of `twin.jit`: the function, which notes that it was called."""
     name = f"{function.__module__}.{function.__qualname__}"
     defined.add(name)
 
@@ -47,7 +47,8 @@ def njit(function: Callable[..., Any]) -> Callable[..., Any]:
     return noting
 
 
-twin.jit.njit = njit  # type: ignore[assignment]
+for decorator in twin.jit.__all__:
+    setattr(twin.jit, decorator, njit)
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.cutting.edge_arrays import EdgeArrays, RowAngles
 from twin.cutting.equation_kernels import normal_along_feed
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: Entries of a summary: lowest and highest engaged point, extent sideways, number of rows engaged, area projected on
 #: the feed in mm2, largest n . f.
@@ -246,7 +246,7 @@ def summarise(
         _measure_extents(share[s], status[s], feed[s], angles, edges, out[s])
 
 
-@njit
+@helper
 def _measure_front(
     share: FloatArray, turn: FloatArray, feed: FloatArray, angles: RowAngles, edges: EdgeArrays, out: FloatArray
 ) -> None:
@@ -270,7 +270,7 @@ def _measure_front(
     out[FRONT_AREA] = front_area
 
 
-@njit
+@helper
 def _mean_share(first: float, second: float, turn: float) -> float:
     """Mean engaged share between two rows."""
     if first + second == 1.0 and first * second == 0.0:
@@ -278,7 +278,7 @@ def _mean_share(first: float, second: float, turn: float) -> float:
     return 0.5 * (first + second)
 
 
-@njit
+@helper
 def _measure_extents(
     share: FloatArray,
     status: NDArray[np.int8],

@@ -20,7 +20,7 @@ from twin.cutting.equation_kernels import (
     to_machine_axes,
     uncut_chip_thickness,
 )
-from twin.jit import njit
+from twin.jit import helper, njit
 
 
 class Steps(NamedTuple):
@@ -95,7 +95,7 @@ def sum_forces_of_steps(
         sum_forces(step, share[s], turn[s], flutes, edges, rows, k, out[offsets[s] : offsets[s + 1]])
 
 
-@njit
+@helper
 def sum_forces(
     step: Step,
     share: FloatArray,
@@ -160,7 +160,7 @@ def sum_forces(
             out[s, c] = out[s - step.period, c]
 
 
-@njit
+@helper
 def _gather(share: FloatArray, i: int, column: FloatArray) -> bool:
     """Copy an element's shares at all rows, the first again at the end; returns whether any is above 0."""
     any_share = False
@@ -172,7 +172,7 @@ def _gather(share: FloatArray, i: int, column: FloatArray) -> bool:
     return any_share
 
 
-@njit
+@helper
 def _row_of(theta: float, rows: int) -> tuple[int, float]:
     """The row at or before an angle, and the fraction of a row from there to it."""
     position = theta * (rows / (2.0 * math.pi))
@@ -180,7 +180,7 @@ def _row_of(theta: float, rows: int) -> tuple[int, float]:
     return int(whole) % rows, position - whole
 
 
-@njit
+@helper
 def _between_rows(a: float, b: float, fraction: float, turn: float) -> float:
     """Engaged share of an element between two rows: it changes at ``turn``, or is interpolated."""
     if a + b == 1.0 and a * b == 0.0:
@@ -188,7 +188,7 @@ def _between_rows(a: float, b: float, fraction: float, turn: float) -> float:
     return (1.0 - fraction) * a + fraction * b
 
 
-@njit
+@helper
 def _next_row(row: int, shift: int, rows: int) -> int:
     """The row of the next sample: one earlier for M3 (shift 1), one later for M4 (shift -1)."""
     row -= shift

@@ -1,4 +1,4 @@
-"""A function's compiled code in files, instead of numba's own cache.
+"""A function's compiled code in files, instead of numba's own cache, and functions that only compiled code calls.
 
 This is the only module that uses numba's internals; they are the same from 0.60 to 0.68.
 """
@@ -14,6 +14,7 @@ from typing import Any
 import numba
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
+from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
 
 from twin.jit.store import Store
@@ -21,8 +22,21 @@ from twin.jit.store import Store
 _NUMBA: Any = numba
 _RESULT: Any = CompileResult
 _DUMPS: Any = dumps
+_DISPATCHER: Any = CPUDispatcher
 # absent in a version of numba that does it in another way
 _FROM_PARTS, _TO_PARTS = _RESULT._rebuild, _RESULT._reduce
+
+
+class CompiledCodeOnly(_DISPATCHER):  # type: ignore[misc]
+    """A compiled function without code for calls from Python, which would end the process without a message."""
+
+    def __call__(self, *_: Any, **__: Any) -> Any:
+        """Refuse the call.
+
+        Raises:
+            TypeError: always.
+        """
+        raise TypeError(f"{self.__name__} can be called from compiled code only; @njit makes it callable from Python")
 
 
 class KeptCode(NullCache):

@@ -12,6 +12,7 @@ _PACKAGE = Path(__file__).parents[1]
 _IMPORT = re.compile(r"^[ \t]*(?:from (twin[\w.]*) import (\([^)]*\)|[^\n]*)|import (twin[\w.]*))", re.M)
 
 
+@cache
 def source_hash(file: Path) -> str:
     """Hash of a module's source and of the sources of all modules of `twin` that it imports, directly or not.
 

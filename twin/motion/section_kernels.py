@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import Strips
-from twin.jit import njit
+from twin.jit import helper, njit
 from twin.motion.swept_kernels import BodyShape, Motion, disc_upper, highest, lowest, reach, side, upside_down
 
 _START_INTERVALS = 8
@@ -93,7 +93,7 @@ def section_nodes(body: BodyShape, motion: Motion, planes: Planes, strips: Strip
     return written
 
 
-@njit
+@helper
 def _same_as_before(body: BodyShape, motion: Motion, planes: Planes, w: float) -> bool:
     """Whether a plane's section is that of the plane before: the whole tool passes straight through both."""
     if planes.horizontal or motion.du != 0.0 or motion.dv != 0.0:
@@ -103,7 +103,7 @@ def _same_as_before(body: BodyShape, motion: Motion, planes: Planes, w: float) -
     return w - planes.pitch >= passed_from and w <= passed_to
 
 
-@njit
+@helper
 def _repeat_nodes(nodes: FloatArray, fresh: NDArray[np.bool_], first: int, end: int) -> int:
     """Append the last plane's nodes, [first, end), again; returns the number then, or -1 when they do not fit."""
     after = end + (end - first)
@@ -116,7 +116,7 @@ def _repeat_nodes(nodes: FloatArray, fresh: NDArray[np.bool_], first: int, end: 
     return after
 
 
-@njit
+@helper
 def _plane_nodes(
     body: BodyShape,
     motion: Motion,
@@ -155,7 +155,7 @@ def _plane_nodes(
     return written if written - first >= 2 else first
 
 
-@njit
+@helper
 def _append_node(node: _Node, nodes: FloatArray, fresh: NDArray[np.bool_], written: int) -> int:
     """Append a node unless its section is empty; returns the number of nodes then, or -1 when they do not fit."""
     if written < 0 or not node.lo <= node.hi:
@@ -167,18 +167,18 @@ def _append_node(node: _Node, nodes: FloatArray, fresh: NDArray[np.bool_], writt
     return written + 1
 
 
-@njit
+@helper
 def _push(stack: FloatArray, depth: int, node: _Node) -> None:
     stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3] = node.phi, node.u, node.lo, node.hi
     stack[depth, 4] = 1.0 if node.fresh else 0.0
 
 
-@njit
+@helper
 def _node_of(stack: FloatArray, depth: int) -> _Node:
     return _Node(stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3], stack[depth, 4] > 0.0)
 
 
-@njit
+@helper
 def _flat_bottom(body: BodyShape, motion: Motion, horizontal: bool) -> float:
     """Height up to which lo is on the body's flat bottom at the start; -inf where that makes no kink in lo."""
     if horizontal or body.meridian.disc == 0.0:
@@ -186,7 +186,7 @@ def _flat_bottom(body: BodyShape, motion: Motion, horizontal: bool) -> float:
     return motion.v + max(0.0, -body.drop) + _SAME_SECTION * body.meridian.radius
 
 
-@njit
+@helper
 def _is_straight(left: _Node, middle: _Node, right: _Node, chord: float, flat_v: float) -> bool:
     """Whether lo and hi need no node between two, judged by one in the middle.
 
@@ -204,7 +204,7 @@ def _is_straight(left: _Node, middle: _Node, right: _Node, chord: float, flat_v:
     )
 
 
-@njit
+@helper
 def _off_chord(u: float, v: float, ua: float, va: float, ub: float, vb: float) -> float:
     """Distance of a point from the chord between two others."""
     du = ub - ua
@@ -215,7 +215,7 @@ def _off_chord(u: float, v: float, ua: float, va: float, ub: float, vb: float) -
     return abs((u - ua) * dv - (v - va) * du) / length
 
 
-@njit
+@helper
 def _node_at(body: BodyShape, motion: Motion, planes: Planes, section: _Section, phi: float) -> _Node:
     """The node of a section at an angle."""
     u = section.middle - section.half * math.cos(phi)
@@ -224,7 +224,7 @@ def _node_at(body: BodyShape, motion: Motion, planes: Planes, section: _Section,
     return _Node(phi, u, lo, hi, fresh)
 
 
-@njit
+@helper
 def _is_new(body: BodyShape, motion: Motion, planes: Planes, w: float, u: float, lo: float, hi: float) -> bool:
     """Whether a section reaches beyond that of the body at rest at the start, below the top of the material."""
     if not lo <= hi:
@@ -239,7 +239,7 @@ def _is_new(body: BodyShape, motion: Motion, planes: Planes, w: float, u: float,
     return lo < lo_start - same or hi > hi_start + same
 
 
-@njit
+@helper
 def _strip_at(body: BodyShape, horizontal: bool, motion: Motion, w: float, u: float) -> tuple[float, float]:
     """The lo and hi of the section by the plane w at u; (inf, -inf) where there is none."""
     if horizontal:
@@ -248,7 +248,7 @@ def _strip_at(body: BodyShape, horizontal: bool, motion: Motion, w: float, u: fl
     return lo, highest(body, motion, w, u)
 
 
-@njit
+@helper
 def _range_of_u(body: BodyShape, horizontal: bool, motion: Motion, w: float) -> tuple[float, float]:
     """Extent of the section by the plane w along u; empty when first > last."""
     u, du = motion.u, motion.du

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 from twin.tools.meridian import Meridian
 from twin.tools.meridian_kernels import is_ball, is_flat, profile_height, profile_radius
 
@@ -46,13 +46,13 @@ class Motion(NamedTuple):
     dv: float
 
 
-@njit
+@helper
 def upside_down(motion: Motion) -> Motion:
     """A motion mirrored in v = 0."""
     return Motion(motion.w, motion.dw, motion.u, motion.du, -motion.v, -motion.dv)
 
 
-@njit
+@helper
 def sphere_upper(motion: Motion, radius: float, w: float, u: float, first: float, last: float) -> float:
     """Largest v on a sphere swept along a motion, t in [first, last], above the point (w, u).
 
@@ -83,13 +83,13 @@ def sphere_upper(motion: Motion, radius: float, w: float, u: float, first: float
     return motion.v + motion.dv * t + math.sqrt(max(0.0, rest - square * off * off))
 
 
-@njit
+@helper
 def disc_upper(u0: float, du: float, v0: float, dv: float, radius: float, u: float, first: float, last: float) -> float:
     """Largest v at u on a disc in the (u, v) plane swept along (u0 + t du, v0 + t dv); -inf where there is none."""
     return sphere_upper(Motion(u0, du, 0.0, 0.0, v0, dv), radius, u, 0.0, first, last)
 
 
-@njit
+@helper
 def _covering_times(motion: Motion, radius: float, w: float, u: float) -> tuple[float, float]:
     """Interval of t in [0, 1] in which a disc moving in the (w, u) plane covers a point; empty when first > last."""
     ew = w - motion.w
@@ -131,19 +131,19 @@ def lowest(body: BodyShape, motion: Motion, w: float, u: float) -> float:
     return base + _lowest_by_search(tool, off, first, last)
 
 
-@njit
+@helper
 def _distance(tool: Meridian, off: Motion, t: float) -> float:
     """Distance of a plan point from the tool axis, at most the tool's radius; ``off`` is its offset at t = 0."""
     return min(math.hypot(off.w - t * off.dw, off.u - t * off.du), tool.radius)
 
 
-@njit
+@helper
 def _height_at(tool: Meridian, off: Motion, t: float) -> float:
     """Height of the tool's lower surface over a plan point; see `_distance`."""
     return off.dv * t + profile_height(tool, _distance(tool, off, t))
 
 
-@njit
+@helper
 def _lowest_by_search(tool: Meridian, off: Motion, first: float, last: float) -> float:
     """Minimum of `_height_at`, a convex function of t, by golden section."""
     x0 = last - _GOLDEN * (last - first)
@@ -176,7 +176,7 @@ def highest(body: BodyShape, motion: Motion, w: float, u: float) -> float:
     return motion.v - body.drop + body.meridian.height + max(motion.dv * first, motion.dv * last)
 
 
-@njit
+@helper
 def _half_chord_by_search(tool: Meridian, disc: Motion, u: float, ta: float, tb: float) -> float:
     """Maximum over t in [ta, tb] of v(t) + sqrt(r(w(t))^2 - (u - u(t))^2), -inf where no disc reaches u.
 
@@ -211,7 +211,7 @@ def _half_chord_by_search(tool: Meridian, disc: Motion, u: float, ta: float, tb:
     return max(best, _half_chord_end(tool, disc, u, first), _half_chord_end(tool, disc, u, last))
 
 
-@njit
+@helper
 def _farthest_reach(tool: Meridian, disc: Motion, u: float, a: float, b: float) -> float:
     """The t in [a, b] at which a section reaches farthest over u, by golden section."""
     for _ in range(_SEARCH_STEPS):
@@ -224,13 +224,13 @@ def _farthest_reach(tool: Meridian, disc: Motion, u: float, a: float, b: float) 
     return 0.5 * (a + b)
 
 
-@njit
+@helper
 def _reach_over(tool: Meridian, disc: Motion, u: float, t: float) -> float:
     """How far a section at height w reaches over the line u; negative where it does not."""
     return profile_radius(tool, disc.w + disc.dw * t) - abs(u - disc.u - disc.du * t)
 
 
-@njit
+@helper
 def _half_chord_end(tool: Meridian, disc: Motion, u: float, t: float) -> float:
     """The v at which the line u leaves a section at height w."""
     radius = profile_radius(tool, disc.w + disc.dw * t)
@@ -238,7 +238,7 @@ def _half_chord_end(tool: Meridian, disc: Motion, u: float, t: float) -> float:
     return disc.v + disc.dv * t + math.sqrt(max(0.0, radius * radius - off * off))
 
 
-@njit
+@helper
 def _edge_of_reach(tool: Meridian, disc: Motion, u: float, inside: float, end: float) -> float:
     """The t nearest to ``end`` at which the section still reaches over u, from one at which it does."""
     if _reach_over(tool, disc, u, end) >= 0.0:
@@ -254,7 +254,7 @@ def _edge_of_reach(tool: Meridian, disc: Motion, u: float, inside: float, end: f
     return a
 
 
-@njit
+@helper
 def _times_at_height(base: float, dz: float, z: float, low: float, high: float) -> tuple[float, float]:
     """Interval of t in [0, 1] with low <= z - base - dz t <= high; empty when first > last."""
     if dz == 0.0:
@@ -289,7 +289,7 @@ def side(body: BodyShape, motion: Motion, z: float, u: float) -> float:
     return _half_chord_by_search(tool, Motion(h0, -dz, motion.u, motion.du, motion.v, motion.dv), u, ta, tb)
 
 
-@njit
+@helper
 def _side_of_ball_or_flat(tool: Meridian, motion: Motion, base: float, z: float, u: float) -> float:
     """As `side` for a ball or flat tool, whose lowest point begins at the height ``base``."""
     value = -math.inf
@@ -333,7 +333,7 @@ def reach(body: BodyShape, motion: Motion, z: float) -> float:
     return best
 
 
-@njit
+@helper
 def _reach_at(tool: Meridian, motion: Motion, height: float, t: float) -> float:
     """Largest u of the body's section at one time; ``height`` above its lowest point at t = 0."""
     return motion.u + motion.du * t + profile_radius(tool, height - motion.dw * t)
@@ -352,7 +352,7 @@ class Sweeps(NamedTuple):
     moves: FloatArray
 
 
-@njit
+@helper
 def _body_of(bodies: FloatArray, j: int) -> BodyShape:
     """The body in a row."""
     return BodyShape(
@@ -386,7 +386,7 @@ def outside_sweeps(
                 break
 
 
-@njit
+@helper
 def _in_box(motion: Motion, radius: float, x: float, y: float, z: float) -> bool:
     """Whether a point lies in the box of a sweep, above the tip's lower end; w is x, u is y, v is z."""
     if z < motion.v + min(0.0, motion.dv):
@@ -396,7 +396,7 @@ def _in_box(motion: Motion, radius: float, x: float, y: float, z: float) -> bool
     return motion.u + min(0.0, motion.du) - radius <= y <= motion.u + max(0.0, motion.du) + radius
 
 
-@njit
+@helper
 def _inside(body: BodyShape, motion: Motion, depth: float, x: float, y: float, z: float) -> bool:
     """Whether a point lies deeper than ``depth`` above the lower surface of a sweep, and below its top."""
     return z < highest(body, motion, x, y) and z > lowest(body, motion, x, y) + depth

@@ -5,26 +5,26 @@ from __future__ import annotations
 import math
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 from twin.tools.meridian import Meridian
 
 #: Largest number of Newton steps, and the relative change at which they end.
 _MOST_STEPS, _CONVERGED = 80, 1e-9
 
 
-@njit
+@helper
 def is_ball(tool: Meridian) -> bool:
     """Whether the lower side is a hemisphere below a cylinder."""
     return tool.disc == 0.0 and tool.tangent == 0.0
 
 
-@njit
+@helper
 def is_flat(tool: Meridian) -> bool:
     """Whether the tool is a cylinder with a sharp corner."""
     return tool.corner == 0.0 and tool.tangent == 0.0
 
 
-@njit
+@helper
 def profile_height(tool: Meridian, rho: float) -> float:
     """Height h(rho) of the tool's lower surface above the tip at a distance from the axis, at most the radius."""
     if rho <= tool.disc:
@@ -37,7 +37,7 @@ def profile_height(tool: Meridian, rho: float) -> float:
     return tool.arc_height
 
 
-@njit
+@helper
 def profile_slope(tool: Meridian, rho: float) -> float:
     """Slope h'(rho) of the meridian at a distance from the axis, up to the radius."""
     if rho <= tool.disc:
@@ -49,7 +49,7 @@ def profile_slope(tool: Meridian, rho: float) -> float:
     return 1.0 / tool.tangent if tool.tangent > 0.0 else math.inf
 
 
-@njit
+@helper
 def resting_offset(tool: Meridian, slope: float, q: float, limit: float) -> float:
     """Offset along a straight edge at which the tool rests on it.
 
@@ -74,7 +74,7 @@ def resting_offset(tool: Meridian, slope: float, q: float, limit: float) -> floa
     return min(limit, flat)
 
 
-@njit
+@helper
 def _offset_on_arc(tool: Meridian, slope: float, q: float, wall: float) -> float:
     """Offset on the corner arc, from the tangent t of the normal's angle kappa there.
 
@@ -112,7 +112,7 @@ def _offset_on_arc(tool: Meridian, slope: float, q: float, wall: float) -> float
     return math.sqrt(max(0.0, rho * rho - q * q))
 
 
-@njit
+@helper
 def profile_radius(tool: Meridian, height: float) -> float:
     """Radius at a height above the lowest point, in [0, tool height]."""
     if height >= tool.arc_height:

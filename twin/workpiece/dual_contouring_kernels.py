@@ -13,22 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, inlined, njit
 
 
-@njit
+@helper
 def _clamped(x: float, low: float, high: float, inset: float) -> float:
     """Keep x between two cell faces, a part ``inset`` of their distance from both."""
     return min(max(x, low + inset * (high - low)), high - inset * (high - low))
 
 
-@njit
+@helper
 def _dot(a: FloatArray, b: FloatArray) -> float:
     product: float = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     return product
 
 
-@njit
+@helper
 def _centre(points: FloatArray, normals: FloatArray, normal: FloatArray) -> None:
     """Shift points so that their mean is 0; fill the unit mean normal (0 where the normals cancel).
 
@@ -38,8 +38,11 @@ def _centre(points: FloatArray, normals: FloatArray, normal: FloatArray) -> None
     """
     n = len(normals)
     for a in range(3):
-        points[n, a] = points[:n, a].mean()
-        normal[a] = normals[:, a].sum()
+        points[n, a] = normal[a] = 0.0
+        for i in range(n):
+            points[n, a] += points[i, a]
+            normal[a] += normals[i, a]
+        points[n, a] /= n
         for i in range(n):
             points[i, a] -= points[n, a]
     length = math.sqrt(_dot(normal, normal))
@@ -48,7 +51,7 @@ def _centre(points: FloatArray, normals: FloatArray, normal: FloatArray) -> None
             normal[a] /= length
 
 
-@njit
+@helper
 def _along_normal(points: FloatArray, normals: FloatArray, normal: FloatArray, shift: FloatArray) -> float:
     """The point on the mean normal nearest to the tangent planes; returns the least cosine of a normal to the mean."""
     smallest, top, bottom = 1.0, 0.0, 0.0
@@ -63,7 +66,7 @@ def _along_normal(points: FloatArray, normals: FloatArray, normal: FloatArray, s
     return smallest
 
 
-@njit
+@helper
 def _nearest(points: FloatArray, normals: FloatArray, ramp: tuple[float, float], shift: FloatArray) -> None:
     """The point nearest to the tangent planes in directions that they determine well; the others fade out smoothly.
 
@@ -89,29 +92,7 @@ def _nearest(points: FloatArray, normals: FloatArray, ramp: tuple[float, float],
                 shift[a] += weight * dot * vectors[a, m]
 
 
-@njit
-def _gather(
-    node: int,
-    strides: tuple[int, int, int],
-    case: int,
-    sheet: int,
-    sheets: NDArray[np.int8],
-    numbers: NDArray[np.int32],
-    own: NDArray[np.int32],
-) -> int:
-    """The crossed edges of one sheet in a cell; returns how many."""
-    n = 0
-    for e in range(12):
-        if sheets[case, e] == sheet:
-            d, low, high = e >> 2, e & 1, e >> 1 & 1
-            p = 1 if d == 0 else 0
-            q = 1 if d == 2 else 2
-            own[n] = numbers[d, node + low * strides[p] + high * strides[q]]
-            n += 1
-    return n
-
-
-@njit
+@helper
 def _case(inside: NDArray[np.bool_], node: int, strides: tuple[int, int, int]) -> int:
     """Which corners of a cell are inside, bit by bit."""
     case = 0
@@ -176,6 +157,44 @@ class Vertices(NamedTuple):
     cells: NDArray[np.int64]
 
 
+@inlined
+def _gather(
+    node: int,
+    strides: tuple[int, int, int],
+    sheet: int,
+    sheet_of: NDArray[np.int8],
+    crossings: Crossings,
+    near: FloatArray,
+    leans: FloatArray,
+) -> int:
+    """Copy the points and normals of the crossed edges of one sheet in a cell; returns how many.
+
+    Args:
+        sheet_of: shape (12,), the sheet of each edge of the cell.
+    """
+    numbers, points, normals = crossings
+    n = 0
+    for e in range(12):
+        if sheet_of[e] == sheet:
+            d, low, high = e >> 2, e & 1, e >> 1 & 1
+            p = 1 if d == 0 else 0
+            q = 1 if d == 2 else 2
+            number = numbers[d, node + low * strides[p] + high * strides[q]]
+            for a in range(3):
+                near[n, a], leans[n, a] = points[number, a], normals[number, a]
+            n += 1
+    return n
+
+
+@helper
+def _last_sheet(sheet_of: NDArray[np.int8]) -> int:
+    """Number of the last sheet in a cell."""
+    last = 0
+    for e in range(12):
+        last = max(last, sheet_of[e])
+    return last
+
+
 @njit
 def place_vertices(
     nodes: Nodes, crossings: Crossings, sheets: NDArray[np.int8], limits: Limits, vertices: Vertices
@@ -191,7 +210,7 @@ def place_vertices(
     inside, x, y, z = nodes
     first, cases, points, normals, creased, cells = vertices
     strides = (len(y) * len(z), len(z), 1)
-    own, near, leans = np.empty(12, dtype=np.int32), np.empty((13, 3)), np.empty((12, 3))
+    near, leans = np.empty((13, 3)), np.empty((12, 3))
     count = 0
     for i in range(len(x) - 1):
         for j in range(len(y) - 1):
@@ -203,11 +222,9 @@ def place_vertices(
                     continue
                 first[node] = count
                 cases[node] = case
-                for sheet in range(sheets[case].max() + 1):
-                    n = _gather(node, strides, case, sheet, sheets, crossings.numbers, own)
-                    for m in range(n):
-                        near[m] = crossings.points[own[m]]
-                        leans[m] = crossings.normals[own[m]]
+                sheet_of = sheets[case]
+                for sheet in range(_last_sheet(sheet_of) + 1):
+                    n = _gather(node, strides, sheet, sheet_of, crossings, near, leans)
                     vertex = points[count]
                     creased[count] = _place_vertex(near[: n + 1], leans[:n], limits, vertex, normals[count])
                     inset = limits.margin * (1 + sheet)
@@ -219,7 +236,7 @@ def place_vertices(
     return count
 
 
-@njit
+@inlined
 def _place_vertex(near: FloatArray, leans: FloatArray, limits: Limits, vertex: FloatArray, normal: FloatArray) -> bool:
     """Fill the vertex of one sheet and its normal; returns whether the surface has an edge or a corner there.
 

@@ -25,7 +25,7 @@ pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="compiles
 KERNELS = """
     from typing import NamedTuple
 
-    from twin.jit import njit
+    from twin.jit import helper, inlined, njit
 
 
     class Pair(NamedTuple):
@@ -46,6 +46,26 @@ KERNELS = """
     @njit
     def total(pair):
         return pair.a + pair.b
+
+
+    @inlined
+    def half(x):
+        return x / 2
+
+
+    @helper
+    def quarter(x):
+        return half(half(x))
+
+
+    @njit
+    def eighth(x):
+        return half(quarter(x))
+
+
+    @njit
+    def sixteenth(x):
+        return quarter(quarter(x))
 """
 
 
@@ -96,6 +116,24 @@ def test_the_second_process_compiles_nothing(kept: Path, source: Path, monkeypat
     assert Path(second.outer.stats.cache_path).is_relative_to(kept)
 
 
+def test_helpers_are_kept_for_other_callers(kept: Path, source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert fresh(source, monkeypatch).eighth(16.0) == 2.0
+    again = fresh(source, monkeypatch)
+    assert again.sixteenth(16.0) == 1.0
+    assert hits(again.quarter) == 1
+    assert hits(again.half) == 0  # part of quarter
+
+
+@pytest.mark.parametrize("name", ["half", "quarter"])
+def test_python_cannot_call_helpers(name: str, kept: Path, source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    module = fresh(source, monkeypatch)
+    with pytest.raises(TypeError, match=f"{name} can be called from compiled code only"):
+        getattr(module, name)(2.0)
+    assert module.eighth(16.0) == 2.0
+    with pytest.raises(TypeError, match="compiled code only"):
+        getattr(module, name)(2.0)
+
+
 def test_nothing_is_written_next_to_the_sources(kept: Path, source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fresh(source, monkeypatch).outer(2.0)
     assert files_in(source.parent) == {source.name}
@@ -115,6 +153,7 @@ def test_kernels_of_the_package_keep_their_code_elsewhere() -> None:
 def test_a_change_of_the_source_compiles_again(kept: Path, source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert fresh(source, monkeypatch).outer(2.0) == 5.0
     source.write_text(source.read_text().replace("2 * x", "3 * x"))
+    sources.source_hash.cache_clear()
     sources._read.cache_clear()
     assert fresh(source, monkeypatch).outer(2.0) == 7.0
 
@@ -184,6 +223,7 @@ def test_a_numba_with_other_internals_keeps_code_by_itself(
     again = fresh(source, monkeypatch)
     assert again.outer(2.0) == 5.0
     assert hits(again.outer) == 1
+    assert again.eighth(16.0) == 2.0
     assert files_in(source.parent) == {source.name}
     assert any(name.endswith(".nbi") for name in files_in(kept))
     assert str(kept.parent) == numba.config.CACHE_DIR

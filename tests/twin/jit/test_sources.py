@@ -49,6 +49,7 @@ def test_a_change_in_an_imported_module_changes_the_hash(tmp_path: Path, monkeyp
     (tmp_path / "others.py").write_text("M = 1\n")
 
     def hash_of_kernels() -> str:
+        sources.source_hash.cache_clear()
         sources._read.cache_clear()
         return source_hash(tmp_path / "kernels.py")
 

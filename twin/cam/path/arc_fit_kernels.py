@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 
 
 class Limits(NamedTuple):
@@ -30,7 +30,7 @@ class Limits(NamedTuple):
     most_radius: float
 
 
-@njit
+@helper
 def _line_fits(points: FloatArray, i: int, j: int, limits: Limits) -> bool:
     """Whether the chord from point i to j lies within the limits on both sides of the points between."""
     left, right = limits.left, limits.right
@@ -52,7 +52,7 @@ def _line_fits(points: FloatArray, i: int, j: int, limits: Limits) -> bool:
     return True
 
 
-@njit
+@helper
 def _arc_through(points: FloatArray, i: int, j: int, arc: FloatArray) -> bool:
     """The circle through points i and j that is nearest to those between; False without one.
 
@@ -89,7 +89,7 @@ def _arc_through(points: FloatArray, i: int, j: int, arc: FloatArray) -> bool:
     return True
 
 
-@njit
+@helper
 def _arc_fits(
     points: FloatArray,
     i: int,
@@ -124,7 +124,7 @@ def _arc_fits(
     return True
 
 
-@njit
+@helper
 def _longest_line(points: FloatArray, i: int, limits: Limits) -> int:
     """The last point of the longest chord from point i that fits."""
     n, end, step = len(points), i + 1, 2
@@ -141,7 +141,7 @@ def _longest_line(points: FloatArray, i: int, limits: Limits) -> int:
     return end
 
 
-@njit
+@helper
 def _longest_arc(points: FloatArray, i: int, limits: Limits, arc: FloatArray, best: FloatArray) -> int:
     """The last point of the longest arc from point i that fits, i without one; fills in the arc.
 
@@ -194,7 +194,7 @@ def fit_plane(points: FloatArray, limits: Limits, arcs: bool, ends: NDArray[np.i
     return pieces
 
 
-@njit
+@helper
 def _chord_fits(points: FloatArray, i: int, j: int, most: float) -> bool:
     """Whether the points between i and j lie within ``most`` of the chord and go forward along it, in space."""
     ux, uy, uz = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1], points[j, 2] - points[i, 2]

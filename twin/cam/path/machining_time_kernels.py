@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 
 
 class Chain(NamedTuple):
@@ -58,7 +58,7 @@ def corner_speeds(chain: Chain, deviation: float, corner: FloatArray) -> None:
         corner[k] = min(speed[k - 1], speed[k], _corner_speed(cosine, chord, a, deviation))
 
 
-@njit
+@helper
 def _corner_speed(cosine: float, chord: float, a: float, deviation: float) -> float:
     """Speed at which a corner can be passed.
 
@@ -96,7 +96,7 @@ def block_times(chain: Chain, corner: FloatArray, times: FloatArray) -> None:
         times[k] = _block_time(length[k], speed[k], acceleration[k], corner[k], corner[k + 1])
 
 
-@njit
+@helper
 def _block_time(length: float, speed: float, a: float, v0: float, v1: float) -> float:
     """Time over a length that begins at speed v0 and ends at v1, with acceleration a, at most at a speed."""
     peak = min(speed, math.sqrt(0.5 * (v0 * v0 + v1 * v1) + a * length))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: Time of a link that must stay as it is.
 _FIXED = -1e7
@@ -132,7 +132,7 @@ class _Cells(NamedTuple):
     places: NDArray[np.int64]
 
 
-@njit
+@helper
 def trapezoid_s(length: float, speed: float, acceleration: float) -> float:
     """Time from rest to rest over a length."""
     if length * acceleration < speed * speed:
@@ -167,7 +167,7 @@ def distinct(near: NDArray[np.int64], distances: FloatArray, table: NDArray[np.i
             table[e, j], reach[e, j] = table[e, j - 1], reach[e, j - 1]
 
 
-@njit
+@helper
 def _sees(ax: float, ay: float, bx: float, by: float, links: Links) -> bool:
     """Whether a straight line keeps off the walls: it leaps as far as the distance to the nearest one allows."""
     clear, x, y, pitch = links.clear, links.x, links.y, links.pitch
@@ -234,7 +234,7 @@ def greedy(links: Links, two_way: bool, cell: float) -> tuple[NDArray[np.int64],
     return tour, back
 
 
-@njit
+@helper
 def _cells(ends: FloatArray, two_way: bool, size: float) -> _Cells:
     """All ends where a piece can be begun, but those of the start, in cells."""
     n = ends.shape[0] // 2
@@ -259,7 +259,7 @@ def _cells(ends: FloatArray, two_way: bool, size: float) -> _Cells:
     return _Cells(x0, y0, size, nx, ny, homes, begins, sizes, members, places)
 
 
-@njit
+@helper
 def _remove(e: int, cells: _Cells) -> None:
     """Take an end out of its cell; the cell's last one takes its place."""
     members, places, c = cells.members, cells.places, cells.homes[e]
@@ -268,7 +268,7 @@ def _remove(e: int, cells: _Cells) -> None:
     cells.sizes[c] -= 1
 
 
-@njit
+@helper
 def _soonest(at: int, links: Links, cells: _Cells, least_lift: float) -> int:
     """The free end that is reached soonest from an end.
 
@@ -310,19 +310,19 @@ def tour_s(tour: NDArray[np.int64], back: NDArray[np.int8], links: Links) -> flo
     return total
 
 
-@njit
+@helper
 def _first_end(closed: Closed, p: int) -> int:
     """The end at which the piece at a position is begun."""
     return 2 * closed.tour[p] + closed.back[p]
 
 
-@njit
+@helper
 def _last_end(closed: Closed, p: int) -> int:
     """The end at which the piece at a position ends."""
     return 2 * closed.tour[p] + 1 - closed.back[p]
 
 
-@njit
+@helper
 def _reverse(closed: Closed, first: int, last: int) -> None:
     """Run positions first..last of the closed tour the other way round."""
     tour, back, place = closed.tour, closed.back, closed.place
@@ -344,7 +344,7 @@ def _reverse(closed: Closed, first: int, last: int) -> None:
         back[i] = 1 - back[i]
 
 
-@njit
+@helper
 def _turn(closed: Closed, first: int, last: int) -> None:
     """A reversal that is logged, so that it can be taken back."""
     log, n = closed.log, len(closed.tour)
@@ -356,7 +356,7 @@ def _turn(closed: Closed, first: int, last: int) -> None:
     log[0] = count + 1
 
 
-@njit
+@helper
 def _turn_shorter(closed: Closed, first: int, last: int) -> None:
     """Reverse positions first..last, or all others if they are fewer: the same closed tour."""
     n = len(closed.tour)
@@ -365,7 +365,7 @@ def _turn_shorter(closed: Closed, first: int, last: int) -> None:
     _turn(closed, first, last)
 
 
-@njit
+@helper
 def _push(closed: Closed, node: int) -> None:
     """Put a piece at the end of the queue, unless it is in it."""
     queue, waits = closed.queue, closed.waits
@@ -377,7 +377,7 @@ def _push(closed: Closed, node: int) -> None:
     waits[node] = True
 
 
-@njit
+@helper
 def _pop(closed: Closed) -> int:
     """Take the first piece out of the queue."""
     queue = closed.queue
@@ -389,7 +389,7 @@ def _pop(closed: Closed) -> int:
     return int(node)
 
 
-@njit
+@helper
 def _swap_neighbours(closed: Closed, a: int, b: int, c: int) -> None:
     """Exchange positions a..b-1 and b..c-1, each in its own direction: three reversals."""
     size = (c - b) % len(closed.tour)
@@ -398,7 +398,7 @@ def _swap_neighbours(closed: Closed, a: int, b: int, c: int) -> None:
     _turn(closed, a + size, c - 1)
 
 
-@njit
+@helper
 def _insert(closed: Closed, first: int, last: int, u: int, turned: bool) -> None:
     """Move positions first..last into the gap after position u, on the shorter side of the tour."""
     n = len(closed.tour)
@@ -416,7 +416,7 @@ def _insert(closed: Closed, first: int, last: int, u: int, turned: bool) -> None
         _swap_neighbours(closed, u + 1, first, last + 1)
 
 
-@njit
+@helper
 def _gap(closed: Closed, links: Links, p: int, side: int) -> _Gap:
     """The link on one side of the piece at position p."""
     n = len(closed.tour)
@@ -429,7 +429,7 @@ def _gap(closed: Closed, links: Links, p: int, side: int) -> _Gap:
     return _Gap(side, p, q, e, f, link_s(e, f, links))
 
 
-@njit
+@helper
 def _improve(node: int, closed: Closed, links: Links, neighbours: Neighbours) -> float:
     """The first 2-opt or Or-opt move found at a piece that shortens the tour; returns its gain, 0 if there is none."""
     place, near, soonest, two_way = closed.place, neighbours.near, neighbours.soonest, neighbours.two_way
@@ -454,7 +454,7 @@ def _improve(node: int, closed: Closed, links: Links, neighbours: Neighbours) ->
     return 0.0
 
 
-@njit
+@helper
 def _two_opt(closed: Closed, links: Links, gap: _Gap, r: int) -> float:
     """Link e to the like end of the piece at position r, and the two ends that are left over, if that gains."""
     tour, n = closed.tour, len(closed.tour)
@@ -480,7 +480,7 @@ def _two_opt(closed: Closed, links: Links, gap: _Gap, r: int) -> float:
     return gain
 
 
-@njit
+@helper
 def _or_opt(closed: Closed, links: Links, gap: _Gap, r: int, turned: bool) -> float:
     """Bring one to three pieces, from the one at position r on, between e and f, if that gains.
 
@@ -518,7 +518,7 @@ def _or_opt(closed: Closed, links: Links, gap: _Gap, r: int, turned: bool) -> fl
     return 0.0
 
 
-@njit
+@helper
 def _settle(closed: Closed, links: Links, neighbours: Neighbours) -> float:
     """Improve until no piece in the queue has a move left; returns the gain."""
     total = 0.0
@@ -547,7 +547,7 @@ def local_search(tour: NDArray[np.int64], back: NDArray[np.int8], links: Links, 
     return _settle(closed, links, neighbours)
 
 
-@njit
+@helper
 def _closed(tour: NDArray[np.int64], back: NDArray[np.int8]) -> Closed:
     n = len(tour)
     place = np.empty(n, dtype=np.int64)
@@ -557,13 +557,13 @@ def _closed(tour: NDArray[np.int64], back: NDArray[np.int8]) -> Closed:
     return Closed(tour, back, place, log, np.zeros(n + 3, dtype=np.int64), np.zeros(n, dtype=np.bool_))
 
 
-@njit
+@helper
 def _random(state: int) -> int:
     """The next number of Park and Miller's generator, 1 to 2^31 - 2."""
     return state * 48271 % 2147483647
 
 
-@njit
+@helper
 def _exchange_gain(closed: Closed, links: Links, a: int, b: int, c: int) -> float:
     """Gain of exchanging positions a..b-1 and b..c-1, each in its own direction."""
     n = len(closed.tour)

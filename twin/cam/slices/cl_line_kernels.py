@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: Nodes of the table that finds where a bull-nose tool touches a slope.
 _TABLE = 65
@@ -143,7 +143,7 @@ def profile_pieces(
     segment_begins[len(sections) - 1], corner_begins[len(sections) - 1] = ns, nc
 
 
-@njit
+@helper
 def _ring_pieces(ring: FloatArray, segments: FloatArray, corners: FloatArray) -> tuple[int, int]:
     """Fill in the upper segments and convex corners of a ring; their numbers."""
     ns, nc = 0, 0
@@ -172,14 +172,14 @@ def _ring_pieces(ring: FloatArray, segments: FloatArray, corners: FloatArray) ->
     return ns, nc
 
 
-@njit
+@helper
 def _sort_rows(rows: FloatArray) -> None:
     """Put rows in the order of their first number."""
     order = np.argsort(rows[:, 0], kind="mergesort")
     rows[:] = rows.copy()[order]
 
 
-@njit
+@helper
 def _first_from(numbers: FloatArray, least: float) -> int:
     """The first of some numbers that do not decrease that is at least this."""
     low, high = 0, len(numbers)
@@ -192,7 +192,7 @@ def _first_from(numbers: FloatArray, least: float) -> int:
     return low
 
 
-@njit
+@helper
 def _outline(s: float, d2: float, end: ToolEnd) -> float:
     """Height of the tool above its lowest point, at an offset s along a plane that is sqrt(d2) off its axis."""
     disc, corner = end
@@ -202,7 +202,7 @@ def _outline(s: float, d2: float, end: ToolEnd) -> float:
     return 0.0 if over <= 0.0 else corner - math.sqrt(max(0.0, corner * corner - over * over))
 
 
-@njit
+@helper
 def _touch_table(d2: float, end: ToolEnd, width: float, offset: FloatArray, slope: FloatArray) -> None:
     """Offsets along the outline and the slopes there, from flat to upright."""
     disc, corner = end
@@ -220,7 +220,7 @@ def _touch_table(d2: float, end: ToolEnd, width: float, offset: FloatArray, slop
             slope[k] = 0.0 if over <= 0.0 else over / math.sqrt(rest) * s / radius
 
 
-@njit
+@helper
 def _touch(nu: float, nv: float, offset: FloatArray, slope: FloatArray) -> float:
     """Offset of the axis of a tool with a flat bottom from where it touches a side with this normal."""
     side = 1.0 if nu > 0.0 else -1.0
@@ -238,7 +238,7 @@ def _touch(nu: float, nv: float, offset: FloatArray, slope: FloatArray) -> float
     return side * (offset[k - 1] + share * (offset[k] - offset[k - 1]))
 
 
-@njit
+@helper
 def _shifts(
     normals_u: FloatArray,
     normals_v: FloatArray,
@@ -277,7 +277,7 @@ def _spans(
         last[i] = min(most, np.floor((right[i] + right_shifts[i] - start) * inverse + _TIE))
 
 
-@njit
+@helper
 def _section_row(
     segments: FloatArray,
     corners: FloatArray,
@@ -328,7 +328,7 @@ def _section_row(
                     row[k] = max(row[k], v - _outline(s, d2, end))
 
 
-@njit
+@helper
 def _bend(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
     """Half the second derivative across sections j - 1, j, j + 1; NaN where one of them is missing."""
     if j < 1 or j + 1 >= len(rows) or not (rows[j - 1, i] > -math.inf and rows[j + 1, i] > -math.inf):
@@ -339,7 +339,7 @@ def _bend(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
     return ((rows[j + 1, i] - rows[j, i]) / h2 - (rows[j, i] - rows[j - 1, i]) / h1) / (h1 + h2)
 
 
-@njit
+@helper
 def _between(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
     """By how much a smooth part is higher between sections than at section j, the highest."""
     bend = _bend(y, rows, j, i)
@@ -352,14 +352,14 @@ def _between(y: FloatArray, rows: FloatArray, j: int, i: int) -> float:
     return -0.25 * climb * climb / bend
 
 
-@njit
+@helper
 def _within_reach(positions: FloatArray, plane: float, radius: float) -> tuple[int, int]:
     """First and one past the last section that a tool at a plane can touch."""
     first = np.searchsorted(positions, plane - radius, side="right")
     return int(first), int(np.searchsorted(positions, plane + radius, side="left"))
 
 
-@njit
+@helper
 def _highest(y: FloatArray, rows: FloatArray, smooth: bool, heights: FloatArray, best: NDArray[np.int64]) -> None:
     """The highest of all rows at every sample, and which it is."""
     heights[:] = -math.inf
@@ -375,7 +375,7 @@ def _highest(y: FloatArray, rows: FloatArray, smooth: bool, heights: FloatArray,
                 heights[i] += _between(y, rows, best[i], i)
 
 
-@njit
+@helper
 def _profile_row(segments: FloatArray, begin: int, end: int, samples: SampleRow, row: FloatArray) -> None:
     """Heights of a section itself, whose segments are given by where they begin and end."""
     start, step, _ = samples
@@ -391,7 +391,7 @@ def _profile_row(segments: FloatArray, begin: int, end: int, samples: SampleRow,
             row[k] = max(row[k], segments[_LEFT_V, i] + climb * (start + step * k - segments[_LEFT_U, i]))
 
 
-@njit
+@helper
 def _most_pieces(segment_begins: NDArray[np.int64], corner_begins: NDArray[np.int64]) -> int:
     """Most segments or corners of a section."""
     most = 0
@@ -400,7 +400,7 @@ def _most_pieces(segment_begins: NDArray[np.int64], corner_begins: NDArray[np.in
     return most
 
 
-@njit
+@helper
 def _work(pieces: Pieces, rows: int, samples: int) -> _Work:
     most = _most_pieces(pieces.segment_begins, pieces.corner_begins)
     return _Work(
@@ -408,7 +408,7 @@ def _work(pieces: Pieces, rows: int, samples: int) -> _Work:
     )
 
 
-@njit
+@helper
 def _raise_ends(
     pieces: Pieces, plane: float, radius: float, samples: SampleRow, pair: FloatArray, heights: FloatArray
 ) -> None:
@@ -437,7 +437,7 @@ def _raise_ends(
                     _raise_between(pieces, (k, inner), at, moved, pair, heights)
 
 
-@njit
+@helper
 def _raise_between(
     pieces: Pieces,
     neighbours: tuple[int, int],
@@ -464,7 +464,7 @@ def _raise_between(
             heights[i] = max(heights[i], pair[0, i] + share * (pair[1, i] - pair[0, i]))
 
 
-@njit
+@helper
 def _raise_rows(
     pieces: Pieces, end: ToolEnd, plane: float, first: int, last: int, samples: SampleRow, work: _Work
 ) -> None:

@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: Change of slope that makes an inner corner, and slope that makes a wall.
 _CORNER = 0.02
 _WALL = 50.0
 
 
-@njit
+@helper
 def _joined(
     heights: FloatArray, cells: NDArray[np.int64], finer: FloatArray, start: float, step: float, line: FloatArray
 ) -> int:
@@ -32,12 +32,12 @@ def _joined(
     return count
 
 
-@njit
+@helper
 def _slope(line: FloatArray, i: int) -> float:
     return (line[i + 1, 1] - line[i, 1]) / (line[i + 1, 0] - line[i, 0])
 
 
-@njit
+@helper
 def _with_corners(line: FloatArray, made: FloatArray) -> int:
     """A line with a point at every inner corner between two of its points: where its sides, extended, meet."""
     count = 0
@@ -54,7 +54,7 @@ def _with_corners(line: FloatArray, made: FloatArray) -> int:
     return count
 
 
-@njit
+@helper
 def _with_walls(line: FloatArray, made: FloatArray) -> int:
     """A line that is upright where it is nearly so, on the side away from the wall."""
     count = 0

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 from twin.tools.meridian import Meridian
 from twin.tools.meridian_kernels import is_ball, is_flat, profile_height, profile_slope, resting_offset
 
@@ -116,19 +116,19 @@ def block_maxima(heights: FloatArray, maxima: FloatArray) -> None:
             maxima[i, j] = heights[i * BLOCK : (i + 1) * BLOCK, j * BLOCK : (j + 1) * BLOCK].max()
 
 
-@njit
+@helper
 def _number(length: float, side: float) -> int:
     """Number of the block in which a length from the first dexel lies."""
     return int(math.floor(length / side))
 
 
-@njit
+@helper
 def _stroke(starts: FloatArray, ends: FloatArray, k: int) -> _Stroke:
     x, y, z = starts[k, 0], starts[k, 1], starts[k, 2]
     return _Stroke(x, y, z, ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - z)
 
 
-@njit
+@helper
 def _block(shape: tuple[int, int], grid: Grid, stroke: _Stroke, i: int, j: int) -> _Block:
     return _Block(
         i * BLOCK,
@@ -178,7 +178,7 @@ def cut_lines(
                 maxima[i, j] = largest.max()
 
 
-@njit
+@helper
 def _mark_reached(
     maxima: FloatArray,
     grid: Grid,
@@ -221,7 +221,7 @@ def _mark_reached(
         reached[j] = (over > 0.0) & (maxima[j] > floor) & (away <= reach * reach)
 
 
-@njit
+@helper
 def _cut_by_ball(heights: FloatArray, block: _Block, stroke: _Stroke, radius: float, largest: FloatArray) -> None:
     """Cut one block by a ball on a line.
 
@@ -262,7 +262,7 @@ def _cut_by_ball(heights: FloatArray, block: _Block, stroke: _Stroke, radius: fl
             largest[j] = max(largest[j], new)
 
 
-@njit
+@helper
 def _cut_by_flat(heights: FloatArray, block: _Block, stroke: _Stroke, radius: float, largest: FloatArray) -> None:
     """Cut one block by a flat tool on a line: the lower end of the time in which its disc covers the dexel."""
     i0, i1, j0, j1, ex0, ey0, pitch_x, pitch_y, floor = block
@@ -292,7 +292,7 @@ def _cut_by_flat(heights: FloatArray, block: _Block, stroke: _Stroke, radius: fl
             largest[j] = max(largest[j], new)
 
 
-@njit
+@helper
 def _cut_by_any(heights: FloatArray, block: _Block, stroke: _Stroke, tool: Meridian, largest: FloatArray) -> None:
     """Cut one block by any tool on a line; the position along it is searched only where the sweep can be low enough.
 
@@ -376,7 +376,7 @@ def cut_arcs(stock: Stock, tool: Meridian, arcs: FloatArray, first_band: int, la
                     maxima[i, j] = _cut_block_by_arc(heights, grid, tool, arc, i, j)
 
 
-@njit
+@helper
 def _cut_block_by_arc(heights: FloatArray, grid: Grid, tool: Meridian, arc: _Arc, i: int, j: int) -> float:
     """Cut one block by a tool on a level arc; its largest height."""
     floor, radius, z = grid.floor, tool.radius, arc.z
@@ -391,21 +391,21 @@ def _cut_block_by_arc(heights: FloatArray, grid: Grid, tool: Meridian, arc: _Arc
     return largest
 
 
-@njit
+@helper
 def _arc(arcs: FloatArray, k: int) -> _Arc:
     x, y, radius, begin = arcs[k, 0], arcs[k, 1], arcs[k, 3], arcs[k, 4]
     start_x, start_y = x + radius * math.cos(begin), y + radius * math.sin(begin)
     return _Arc(x, y, arcs[k, 2], radius, begin, arcs[k, 5], start_x, start_y, arcs[k, 6], arcs[k, 7])
 
 
-@njit
+@helper
 def _turned(arc: _Arc, angle: float) -> float:
     """How far along the sweep a direction lies, rad in [0, 2 pi)."""
     turn = angle - arc.begin
     return turn % (2.0 * math.pi) if arc.sweep > 0.0 else (-turn) % (2.0 * math.pi)
 
 
-@njit
+@helper
 def _arc_box(arc: _Arc) -> tuple[float, float, float, float]:
     """Least and largest x, least and largest y of an arc."""
     low_x, high_x = min(arc.start_x, arc.end_x), max(arc.start_x, arc.end_x)
@@ -423,7 +423,7 @@ def _arc_box(arc: _Arc) -> tuple[float, float, float, float]:
     return low_x, high_x, low_y, high_y
 
 
-@njit
+@helper
 def _from_arc(arc: _Arc, x: float, y: float) -> float:
     """Distance of a point from an arc in the plan."""
     ends = math.sqrt(min((x - arc.start_x) ** 2 + (y - arc.start_y) ** 2, (x - arc.end_x) ** 2 + (y - arc.end_y) ** 2))

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 from twin.tools.meridian import Meridian
 from twin.tools.meridian_kernels import is_ball, profile_height, resting_offset
 
@@ -148,14 +148,14 @@ class _Triangle(NamedTuple):
     y2: float
 
 
-@njit
+@helper
 def face_at(faces: FloatArray, n: int) -> Face:
     """Row n of a table of faces."""
     f = faces[n]
     return Face(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9])
 
 
-@njit
+@helper
 def edge_at(edges: FloatArray, n: int) -> Edge:
     """Row n of a table of edges."""
     e = edges[n]
@@ -188,21 +188,21 @@ def face_patches(
         _put_face(faces[t], Face(x, y, z, wy / det, -wx / det, -uy / det, ux / det, rise_u, rise_w, top))
 
 
-@njit
+@helper
 def _put_face(row: FloatArray, face: Face) -> None:
     row[0], row[1], row[2] = face.x, face.y, face.z
     row[3], row[4], row[5], row[6] = face.ux, face.uy, face.wx, face.wy
     row[7], row[8], row[9] = face.rise_u, face.rise_w, face.top
 
 
-@njit
+@helper
 def _put_edge(row: FloatArray, edge: Edge) -> None:
     row[0], row[1], row[2] = edge.x, edge.y, edge.z
     row[3], row[4], row[5] = edge.ux, edge.uy, edge.length
     row[6], row[7], row[8] = edge.rise, edge.tilt, edge.top
 
 
-@njit
+@helper
 def _contact_offset(nx: float, ny: float, nz: float, tool: Meridian) -> tuple[float, float]:
     """From the tip to where the tool's normal is that of a face: along its level part, in its lengths, and up."""
     slope = math.hypot(nx, ny)
@@ -232,7 +232,7 @@ def edge_patches(vertices: FloatArray, ends: NDArray[np.int64], edges: FloatArra
         _put_edge(edges[e], Edge(vertices[a, 0], vertices[a, 1], vertices[a, 2], ux, uy, level, rise, tilt, top))
 
 
-@njit
+@helper
 def _list_patch(
     triangle: _Triangle,
     box: Box,
@@ -270,13 +270,13 @@ def _list_patch(
             counts[cell] += 1
 
 
-@njit
+@helper
 def _cell(length: float, size: float) -> int:
     """Number of the column or row in which a length from the low corner lies."""
     return int(math.floor(length / size))
 
 
-@njit
+@helper
 def _range_in_strip(triangle: _Triangle, below: float, above: float) -> tuple[float, float]:
     """Least and largest x of the part of a triangle with y in a range; the least is the larger where there is none."""
     x0, y0, x1, y1, x2, y2 = triangle
@@ -300,7 +300,7 @@ def _range_in_strip(triangle: _Triangle, below: float, above: float) -> tuple[fl
     return least, most
 
 
-@njit
+@helper
 def _widened(tool: Meridian, level: Box, azimuth: Box, steep: bool) -> Box:
     """Box of contact offsets, from boxes of the normals' level part and of its direction."""
     low_x, high_x = _offset_range(tool, level.low_x, level.high_x, azimuth.low_x, azimuth.high_x, steep)
@@ -308,7 +308,7 @@ def _widened(tool: Meridian, level: Box, azimuth: Box, steep: bool) -> Box:
     return Box(low_x, high_x, low_y, high_y)
 
 
-@njit
+@helper
 def _offset_range(
     tool: Meridian, level_low: float, level_high: float, azimuth_low: float, azimuth_high: float, steep: bool
 ) -> tuple[float, float]:
@@ -361,7 +361,7 @@ def list_edges(
             _list_patch(ends, box, grid, number + e, fill, counts, entries)
 
 
-@njit
+@helper
 def _edge_offsets(edge: Edge, low: float, step: float, tool: Meridian) -> Box:
     """Box of contact offsets on an edge for normals from an angle ``low`` to ``low + step`` about it.
 
@@ -393,7 +393,7 @@ def _edge_offsets(edge: Edge, low: float, step: float, tool: Meridian) -> Box:
     return _widened(tool, level, azimuth, steep)
 
 
-@njit
+@helper
 def _largest_share(high: float, least: float, most: float, one: float) -> float:
     """Largest x / sqrt(one + x x + y y) with x <= high and y in [least, most]."""
     if high >= 1e6:
@@ -405,7 +405,7 @@ def _largest_share(high: float, least: float, most: float, one: float) -> float:
     return high / root if root > 0.0 else 1.0
 
 
-@njit
+@helper
 def _shares(cone: Box, one: float) -> Box:
     """Box of (x, y) / sqrt(one + x x + y y) for (x, y) in a box."""
     x0, x1, y0, y1 = cone
@@ -439,7 +439,7 @@ def list_vertices(
         _list_patch(_Triangle(x, y, x, y, x, y), box, grid, number + v, fill, counts, entries)
 
 
-@njit
+@helper
 def _tip_on_edge(tool: Meridian, edge: Edge, x: float, y: float, best: float) -> tuple[float, float]:
     """Height of the tip of a tool resting on a closed edge, and where it touches, 0 to 1.
 

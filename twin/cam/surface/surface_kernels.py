@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: Cones thinner than this have no part of their own: neighbours touch there, up to R times this.
 _THIN_RAD = 1e-10
@@ -93,7 +93,7 @@ def edge_sides(triangles: NDArray[np.int64], vertices: int, sides: Groups) -> in
     return edges
 
 
-@njit
+@helper
 def _sort_by(order: NDArray[np.int64], keys: NDArray[np.int64]) -> None:
     """Sort numbers by their keys, those of equal keys as they were; most often they are few."""
     if len(order) > _FEW:
@@ -238,7 +238,7 @@ def vertex_cones(
             cones[v, 2], cones[v, 3] = py[:count].min(), py[:count].max()
 
 
-@njit
+@helper
 def _clipped(polygon: _Polygon, ex: float, ey: float, ez: float, x: FloatArray, y: FloatArray) -> int:
     """The part of a convex polygon where ex x + ey y + ez <= 0; fills in its corners and returns their number."""
     px, py, count = polygon

@@ -15,7 +15,7 @@ from twin.geometry.column_cells import store_kernels as layout
 from twin.geometry.column_cells.cut_kernels import cut_planes
 from twin.geometry.column_cells.edge_kernels import EDGE_COLUMNS
 from twin.geometry.column_cells.fill_kernels import fill_plane
-from twin.geometry.column_cells.line_kernels import u_lines, v_lines
+from twin.geometry.column_cells.line_kernels import cell_lines
 from twin.geometry.column_cells.query_kernels import Planes, contains, plane_trapezoids
 from twin.geometry.column_cells.strips import Strips
 from twin.geometry.polygons import lines
@@ -141,11 +141,10 @@ class CellFamily:
         """Lines through planes, as `SliceStore.line_ends` gives them."""
         for k in planes[self.store.table[planes, 0] == 0]:
             self.ensure(int(k), int(k) + 1)
-        kernel = v_lines if fixed else u_lines
         tables = self.store.table[planes]
         return lines.collect(
             len(planes) * len(at_mm),
-            lambda out: kernel(at_mm, window_mm, lines.MERGE_MM, tables, self.grid, self.store, out),
+            lambda out: cell_lines(at_mm, fixed, window_mm, lines.MERGE_MM, tables, self.grid, self.store, out),
         )
 
     def vote(self, points_mm: FloatArray, planes: Planes, votes: NDArray[np.int8], least: int, most: int) -> None:

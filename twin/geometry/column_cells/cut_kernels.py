@@ -47,7 +47,7 @@ from twin.geometry.column_cells.strip_kernels import (
     tile_of,
 )
 from twin.geometry.column_cells.strips import Strips
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: Entries of a cursor: where a kernel that ran out of room goes on.
 PLANE, COLUMN, TILE = 0, 1, 2
@@ -137,19 +137,19 @@ def cut_planes(
     return DONE
 
 
-@njit
+@helper
 def _first_column(nodes: FloatArray, node: int, grid: Grid) -> int:
     """The first column that a strip meets, from its first node; 0 without nodes."""
     return max(0, int(math.floor((nodes[node, U] - grid.u_low) / grid.size))) if node < len(nodes) else 0
 
 
-@njit
+@helper
 def _last_column(nodes: FloatArray, end: int, grid: Grid) -> int:
     """The last column that a strip meets, from its last node."""
     return min(grid.columns - 1, int(math.floor((nodes[end, U] - grid.u_low) / grid.size)))
 
 
-@njit
+@helper
 def _area(cell: int, box: Tile, cells: NDArray[np.int32], pool: FloatArray) -> float:
     """Area of material in a cell."""
     area = (box.c1 - box.c0) * (box.top - box.floor)
@@ -158,7 +158,7 @@ def _area(cell: int, box: Tile, cells: NDArray[np.int32], pool: FloatArray) -> f
     return area
 
 
-@njit
+@helper
 def cut_edges(
     edges: FloatArray,
     begin: int | np.int64,
@@ -221,7 +221,7 @@ def cut_edges(
     return _emit_odd(toggles_hi, n_hi, segments, pieces, False, out, count)
 
 
-@njit
+@helper
 def _side_of(part: Edge, curve: Edge) -> _Side:
     """On which side of lo or hi a part of an edge runs that lies over one segment."""
     da, db = part.v0 - v_on(curve, part.u0), part.v1 - v_on(curve, part.u1)
@@ -232,7 +232,7 @@ def _side_of(part: Edge, curve: Edge) -> _Side:
     return _Side(above_a, above_b, u)
 
 
-@njit
+@helper
 def _note(toggles: FloatArray, n: int, part: Edge, side: _Side) -> int:
     """Append where an edge begins and ends to run above lo or hi; returns the number of toggles."""
     if side.above_a:
@@ -247,7 +247,7 @@ def _note(toggles: FloatArray, n: int, part: Edge, side: _Side) -> int:
     return n
 
 
-@njit
+@helper
 def _turns(a: float, lo: _Side, hi: _Side) -> tuple[tuple[float, bool], tuple[float, bool], tuple[float, bool]]:
     """Whether an edge is kept from ``a`` on, and from where it changes side: it is where above hi or not above lo."""
     begin, end = hi.above_a or not lo.above_a, hi.above_b or not lo.above_b
@@ -256,7 +256,7 @@ def _turns(a: float, lo: _Side, hi: _Side) -> tuple[tuple[float, bool], tuple[fl
     return (a, begin), (hi.u, hi.above_b or not lo.above_a), (lo.u, end)
 
 
-@njit
+@helper
 def _emit_odd(
     toggles: FloatArray, n: int, segments: FloatArray, pieces: int, lower: bool, out: FloatArray, count: int
 ) -> int:

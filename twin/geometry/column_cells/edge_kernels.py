@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: Numbers in an edge's row.
 EDGE_COLUMNS = 5
@@ -27,19 +27,19 @@ class Edge(NamedTuple):
     sign: float
 
 
-@njit
+@helper
 def edge_of(edges: FloatArray, e: int) -> Edge:
     """The edge in a row of an array."""
     return Edge(edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], edges[e, 4])
 
 
-@njit
+@helper
 def put_edge(edges: FloatArray, e: int, edge: Edge) -> None:
     """Write an edge to a row of an array."""
     edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], edges[e, 4] = edge.u0, edge.v0, edge.u1, edge.v1, edge.sign
 
 
-@njit
+@helper
 def line_v(u: float, ua: float, va: float, ub: float, vb: float) -> float:
     """The v at u on the straight line through two points, exact at both."""
     if u == ua:
@@ -49,19 +49,19 @@ def line_v(u: float, ua: float, va: float, ub: float, vb: float) -> float:
     return va + (vb - va) * ((u - ua) / (ub - ua))
 
 
-@njit
+@helper
 def v_on(edge: Edge, u: float) -> float:
     """The v at u on an edge, exact at its ends."""
     return line_v(u, edge.u0, edge.v0, edge.u1, edge.v1)
 
 
-@njit
+@helper
 def part_of(edge: Edge, ua: float, ub: float) -> Edge:
     """The part of an edge between two u."""
     return Edge(ua, v_on(edge, ua), ub, v_on(edge, ub), edge.sign)
 
 
-@njit
+@helper
 def emit(out: FloatArray, count: int, edge: Edge) -> int:
     """Append an edge, but none without length; returns the number of edges. The caller has made sure of room."""
     if edge.u1 > edge.u0:
@@ -77,7 +77,7 @@ def crossing(a: float, b: float, da: float, db: float) -> float:
     return min(max(u, a), b)
 
 
-@njit
+@helper
 def area_above(edges: FloatArray, begin: int | np.int64, count: int | np.int64, floor: float) -> float:
     """Area of material that a cell's edges bound, above the cell's floor."""
     area = 0.0

@@ -29,7 +29,7 @@ from twin.geometry.column_cells.store_kernels import (
     store_edges,
 )
 from twin.geometry.column_cells.strip_kernels import Tile, tile_of
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: A closing edge over this part of a cell's width spans it; the rest is rounding.
 _WHOLE_WIDTH = 1.0 - 1e-12
@@ -78,7 +78,7 @@ def fill_plane(
     return DONE
 
 
-@njit
+@helper
 def _all_level(edges: FloatArray, begin: float, end: float) -> bool:
     """Whether all edges between two u run level from the one to the other."""
     for e in range(len(edges)):
@@ -89,7 +89,7 @@ def _all_level(edges: FloatArray, begin: float, end: float) -> bool:
     return True
 
 
-@njit
+@helper
 def _edges_between(edges: FloatArray, c0: float, c1: float, work: FloatArray) -> int:
     """Write the parts of edges between two u; returns their number, or -1 when they do not fit."""
     n = 0
@@ -102,7 +102,7 @@ def _edges_between(edges: FloatArray, c0: float, c1: float, work: FloatArray) ->
     return n
 
 
-@njit
+@helper
 def _fill_tiles(n: int, column: int, grid: Grid, store: CellStore, scratch: Scratch) -> int:
     """Fill the first cells that are not in use with a column's edges, the first ``n`` of ``scratch.work``."""
     if n < 0:
@@ -132,7 +132,7 @@ def _fill_tiles(n: int, column: int, grid: Grid, store: CellStore, scratch: Scra
     return DONE
 
 
-@njit
+@helper
 def _lowest(edges: FloatArray, n: int) -> float:
     """Lowest v of the first ``n`` edges."""
     lowest = math.inf
@@ -141,7 +141,7 @@ def _lowest(edges: FloatArray, n: int) -> float:
     return lowest
 
 
-@njit
+@helper
 def _split_at_top(n: int, tile: Tile, work: FloatArray, out: FloatArray, toggles: FloatArray) -> tuple[int, int]:
     """Divide a column's edges, the first ``n`` of ``work``, at a tile's top.
 
@@ -178,7 +178,7 @@ def _split_at_top(n: int, tile: Tile, work: FloatArray, out: FloatArray, toggles
     return count, above
 
 
-@njit
+@helper
 def _spans_top(edges: FloatArray, count: int, tile: Tile) -> bool:
     """Whether a cell's edges are nothing but a closing edge over its whole width."""
     covered = 0.0
@@ -190,7 +190,7 @@ def _spans_top(edges: FloatArray, count: int, tile: Tile) -> bool:
     return count > 0 and covered >= (tile.c1 - tile.c0) * _WHOLE_WIDTH
 
 
-@njit
+@helper
 def _share_pages(tables: NDArray[np.int64], column: int, tiles: int, alone: bool, store: CellStore) -> bool:
     """Give a column its table: that of the column before where they are alike, else one with pages as few as possible.
 
@@ -221,7 +221,7 @@ def _share_pages(tables: NDArray[np.int64], column: int, tiles: int, alone: bool
     return without_edges
 
 
-@njit
+@helper
 def _move_page(at: int, used: NDArray[np.int64], cells: NDArray[np.int32]) -> int:
     """Move a page with its edges to the first cells that are not in use; returns its position then."""
     to = used[CELLS]

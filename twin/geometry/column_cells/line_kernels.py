@@ -15,12 +15,13 @@ from twin.geometry.column_cells.edge_kernels import edge_of
 from twin.geometry.column_cells.store_kernels import EMPTY, FULL, SIZE, START, STATE, CellStore, Grid, cell_at
 from twin.geometry.column_cells.strip_kernels import Tile, tile_of
 from twin.geometry.polygons.line_kernels import LineEnds, join_sorted
-from twin.jit import njit
+from twin.jit import inlined, njit
 
 
 @njit
-def u_lines(
+def cell_lines(
     lines: FloatArray,
+    fixed: int,
     window: tuple[float, float],
     merge: float,
     tables: NDArray[np.int64],
@@ -28,40 +29,47 @@ def u_lines(
     store: CellStore,
     out: LineEnds,
 ) -> int:
-    """Lines u = const through column cells.
+    """Lines through column cells.
 
     Args:
-        window: only cells between these v are examined.
+        fixed: 0 for lines u = const, 1 for v = const.
+        window: only cells between these values of the other coordinate are examined.
         tables: shape (p, columns), the table of pages of each column of each plane.
         out: filled: all lines of the first plane, then those of the second, ...
 
     Returns:
         The number of ends, or -1 when they do not fit.
     """
-    t0 = max(0, math.floor((window[0] - grid.v_low) / grid.size))
-    t1 = min(grid.tiles, math.floor((window[1] - grid.v_low) / grid.size) + 1)
     page, cells, pool = store.page, store.cells, store.pool
     offsets, ends, slopes = out.offsets, out.ends_mm, out.slopes
+    low, count, across_low, across = grid.u_low, grid.columns, grid.v_low, grid.tiles
+    if fixed:
+        low, count, across_low, across = across_low, across, low, count
+    first = max(0, math.floor((window[0] - across_low) / grid.size))
+    last = min(across, math.floor((window[1] - across_low) / grid.size) + 1)
     n = 0
     offsets[0] = 0
     for i in range(len(tables) * len(lines)):
         begin = n
-        u = lines[i % len(lines)]
-        column = math.floor((u - grid.u_low) / grid.size)
-        if 0 <= column < grid.columns:
-            for tile in range(t0, t1):
-                cell = cell_at(page, tables[i // len(lines), column], tile)
-                if cells[cell, STATE] == EMPTY:
-                    continue
-                if n + 3 + cells[cell, SIZE] > len(ends):
-                    return -1
-                m = _u_ends(u, cell, tile_of(grid, column, tile), cells, pool, ends, slopes, n)
-                n = join_sorted(ends, slopes, begin, n, m, merge)
+        at = lines[i % len(lines)]
+        row = math.floor((at - low) / grid.size)
+        for k in range(first, last if 0 <= row < count else first):
+            column, tile = (k, row) if fixed else (row, k)
+            cell = cell_at(page, tables[i // len(lines), column], tile)
+            if cells[cell, STATE] == EMPTY:
+                continue
+            if n + 3 + 2 * cells[cell, SIZE] > len(ends):
+                return -1
+            if fixed:
+                m = _v_ends(at, cell, tile_of(grid, column, tile), cells, pool, ends, slopes, n)
+            else:
+                m = _u_ends(at, cell, tile_of(grid, column, tile), cells, pool, ends, slopes, n)
+            n = join_sorted(ends, slopes, begin, n, m, merge)
         offsets[i + 1] = n
     return n
 
 
-@njit
+@inlined
 def _u_ends(
     u: float,
     cell: int,
@@ -90,41 +98,7 @@ def _u_ends(
     return m
 
 
-@njit
-def v_lines(
-    lines: FloatArray,
-    window: tuple[float, float],
-    merge: float,
-    tables: NDArray[np.int64],
-    grid: Grid,
-    store: CellStore,
-    out: LineEnds,
-) -> int:
-    """Lines v = const through column cells; as `u_lines`, ``window`` in u."""
-    c0 = max(0, math.floor((window[0] - grid.u_low) / grid.size))
-    c1 = min(grid.columns, math.floor((window[1] - grid.u_low) / grid.size) + 1)
-    page, cells, pool = store.page, store.cells, store.pool
-    offsets, ends, slopes = out.offsets, out.ends_mm, out.slopes
-    n = 0
-    offsets[0] = 0
-    for i in range(len(tables) * len(lines)):
-        begin = n
-        v = lines[i % len(lines)]
-        tile = math.floor((v - grid.v_low) / grid.size)
-        if 0 <= tile < grid.tiles:
-            for column in range(c0, c1):
-                cell = cell_at(page, tables[i // len(lines), column], tile)
-                if cells[cell, STATE] == EMPTY:
-                    continue
-                if n + 2 + 2 * cells[cell, SIZE] > len(ends):
-                    return -1
-                m = _v_ends(v, cell, tile_of(grid, column, tile), cells, pool, ends, slopes, n)
-                n = join_sorted(ends, slopes, begin, n, m, merge)
-        offsets[i + 1] = n
-    return n
-
-
-@njit
+@inlined
 def _v_ends(
     v: float,
     cell: int,

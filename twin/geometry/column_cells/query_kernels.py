@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.edge_kernels import edge_of, v_on
 from twin.geometry.column_cells.store_kernels import FULL, PARTIAL, SIZE, START, STATE, CellStore, Grid, cell_at
-from twin.jit import njit
+from twin.jit import helper, njit
 
 
 class Planes(NamedTuple):
@@ -24,7 +24,7 @@ class Planes(NamedTuple):
     pitch: float
 
 
-@njit
+@helper
 def _odd_above(u: float, v: float, begin: int, end: int, pool: FloatArray) -> bool:
     """Whether an odd number of a cell's edges lies above a point."""
     inside = False
@@ -100,7 +100,7 @@ def plane_trapezoids(tables: NDArray[np.int64], grid: Grid, store: CellStore, ou
     return n
 
 
-@njit
+@helper
 def _end_of_full(table: int, tile: int, tiles: int, store: CellStore) -> int:
     """The first tile from ``tile`` on that is not full."""
     while tile < tiles and store.cells[cell_at(store.page, table, tile), STATE] == FULL:
@@ -108,7 +108,7 @@ def _end_of_full(table: int, tile: int, tiles: int, store: CellStore) -> int:
     return tile
 
 
-@njit
+@helper
 def _cell_trapezoids(cell: int, floor: float, store: CellStore, out: FloatArray, n: int) -> int:
     """Append the trapezoids of one cell with edges; returns the number of rows, or -1 when they do not fit."""
     pool, begin, count = store.pool, store.cells[cell, START], store.cells[cell, SIZE]
@@ -135,7 +135,7 @@ def _cell_trapezoids(cell: int, floor: float, store: CellStore, out: FloatArray,
     return n
 
 
-@njit
+@helper
 def _stack_edges(pool: FloatArray, begin: int, count: int, u: float, stack: NDArray[np.int64]) -> int:
     """Write a cell's edges over u from the lowest to the highest; returns their number."""
     hits = 0

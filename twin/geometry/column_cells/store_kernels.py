@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.edge_kernels import EDGE_COLUMNS
-from twin.jit import njit
+from twin.jit import helper
 
 #: States of a cell.
 EMPTY, FULL, PARTIAL = 0, 1, 2
@@ -94,13 +94,13 @@ class Scratch(NamedTuple):
     out: FloatArray
 
 
-@njit
+@helper
 def cell_at(page: NDArray[np.int64], table: int, tile: int) -> int:
     """Index of the cell of a tile in a column with a table of pages."""
     return page[table, tile >> PAGE_BITS] + (tile & _IN_PAGE)
 
 
-@njit
+@helper
 def _block_class(count: int | np.int64) -> int:
     """Smallest power of two, as an exponent above the smallest block, that holds ``count`` edges."""
     size = _SMALLEST_BLOCK
@@ -111,7 +111,7 @@ def _block_class(count: int | np.int64) -> int:
     return exponent
 
 
-@njit
+@helper
 def _release(cell: int, cells: NDArray[np.int32], pool: FloatArray, free: NDArray[np.int64]) -> None:
     """Return a cell's block of edges to the pool, if it has one."""
     if cells[cell, ROOM] > 0:
@@ -121,7 +121,7 @@ def _release(cell: int, cells: NDArray[np.int32], pool: FloatArray, free: NDArra
         cells[cell, ROOM] = 0
 
 
-@njit
+@helper
 def _reserve(cell: int, count: int, cells: NDArray[np.int32], pool: FloatArray, free: NDArray[np.int64]) -> bool:
     """Give a cell a block with room for ``count`` edges; False when the pool has none (nothing is changed then)."""
     exponent = _block_class(count)
@@ -141,7 +141,7 @@ def _reserve(cell: int, count: int, cells: NDArray[np.int32], pool: FloatArray, 
     return True
 
 
-@njit
+@helper
 def store_edges(
     cell: int,
     edges: FloatArray,
@@ -166,7 +166,7 @@ def store_edges(
     return True
 
 
-@njit
+@helper
 def own_page(store: CellStore, plane: int, column: int, tile: int) -> int:
     """Give a column of a plane cells of its own for a tile's page, if it has none; DONE, TABLES_FULL or CELLS_FULL."""
     table, page, used = store.table, store.page, store.used
@@ -190,7 +190,7 @@ def own_page(store: CellStore, plane: int, column: int, tile: int) -> int:
     return DONE
 
 
-@njit
+@helper
 def _copy_page(old: int, new: int, cells: NDArray[np.int32]) -> None:
     """Copy the cells of a page; the edges still belong to the old ones."""
     for tile in range(PAGE_TILES):

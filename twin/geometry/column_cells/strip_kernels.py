@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.edge_kernels import Edge, crossing, line_v
 from twin.geometry.column_cells.store_kernels import Grid
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: Columns of the array of nodes.
 U, LO, HI = 0, 1, 2
@@ -70,20 +70,20 @@ class Segment(NamedTuple):
     hi_inside: bool
 
 
-@njit
+@helper
 def _between(nodes: FloatArray, k: int, column: int, u: float) -> float:
     """The lo or hi, by its column, at u between the nodes k and k + 1."""
     return line_v(u, nodes[k, U], nodes[k, column], nodes[k + 1, U], nodes[k + 1, column])
 
 
-@njit
+@helper
 def tile_of(grid: Grid, column: int, tile: int) -> Tile:
     """The box of a cell."""
     c0, c1 = grid.u_low + column * grid.size, grid.u_low + (column + 1) * grid.size
     return Tile(c0, c1, grid.v_low + tile * grid.size, grid.v_low + (tile + 1) * grid.size)
 
 
-@njit
+@helper
 def strip_part(nodes: FloatArray, fresh: NDArray[np.bool_], first: int, end: int, grid: Grid, column: int) -> StripPart:
     """The part of a strip over one column that it meets.
 
@@ -120,7 +120,7 @@ def covers(part: StripPart, tile: Tile) -> bool:
     return part.spans and part.lo_max <= tile.floor and part.hi_min >= tile.top
 
 
-@njit
+@helper
 def _segment(nodes: FloatArray, k: int, ua: float, ub: float, tile: Tile) -> Segment:
     """The strip over [ua, ub], between the nodes k and k + 1."""
     lo_a, lo_b = _between(nodes, k, LO, ua), _between(nodes, k, LO, ub)
@@ -128,13 +128,13 @@ def _segment(nodes: FloatArray, k: int, ua: float, ub: float, tile: Tile) -> Seg
     return Segment(ua, ub, lo_a, lo_b, hi_a, hi_b, lo_a > tile.floor, hi_a < tile.top)
 
 
-@njit
+@helper
 def _crosses(whole: Segment, level: float) -> bool:
     """Whether lo or hi crosses a level."""
     return (whole.lo_a > level) != (whole.lo_b > level) or (whole.hi_a > level) != (whole.hi_b > level)
 
 
-@njit
+@helper
 def _level_crossings(whole: Segment, floor: float, top: float, cuts: FloatArray) -> int:
     """Fill the ends of a segment and the u at which lo or hi cross floor or top; returns how many, less 1."""
     n = 1
@@ -151,24 +151,24 @@ def _level_crossings(whole: Segment, floor: float, top: float, cuts: FloatArray)
     return n
 
 
-@njit
+@helper
 def _part(whole: Segment, pa: float, pb: float, lo_m: float, hi_m: float, tile: Tile) -> Segment:
     """The part [pa, pb] of a segment, with lo_m and hi_m in its middle."""
     lo_a, lo_b = _lo_on(whole, pa), _lo_on(whole, pb)
     return Segment(pa, pb, lo_a, lo_b, _hi_on(whole, pa), _hi_on(whole, pb), lo_m > tile.floor, hi_m < tile.top)
 
 
-@njit
+@helper
 def _lo_on(whole: Segment, u: float) -> float:
     return line_v(u, whole.ua, whole.lo_a, whole.ub, whole.lo_b)
 
 
-@njit
+@helper
 def _hi_on(whole: Segment, u: float) -> float:
     return line_v(u, whole.ua, whole.hi_a, whole.ub, whole.hi_b)
 
 
-@njit
+@helper
 def split_segments(nodes: FloatArray, part: StripPart, tile: Tile, segments: FloatArray) -> int:
     """A strip over one column as linear segments that cross neither the floor nor the top of a tile.
 
@@ -205,7 +205,7 @@ def split_segments(nodes: FloatArray, part: StripPart, tile: Tile, segments: Flo
     return count
 
 
-@njit
+@helper
 def _put_segment(segments: FloatArray, m: int, segment: Segment) -> None:
     """Write a segment to a row."""
     segments[m, UA], segments[m, UB] = segment.ua, segment.ub
@@ -215,13 +215,13 @@ def _put_segment(segments: FloatArray, m: int, segment: Segment) -> None:
     segments[m, HI_INSIDE] = 1.0 if segment.hi_inside else 0.0
 
 
-@njit
+@helper
 def lo_of(segments: FloatArray, m: int) -> Edge:
     """The lo of a segment, as an edge with material below it."""
     return Edge(segments[m, UA], segments[m, LO_A], segments[m, UB], segments[m, LO_B], 1.0)
 
 
-@njit
+@helper
 def hi_of(segments: FloatArray, m: int) -> Edge:
     """The hi of a segment, as an edge with material above it."""
     return Edge(segments[m, UA], segments[m, HI_A], segments[m, UB], segments[m, HI_B], -1.0)

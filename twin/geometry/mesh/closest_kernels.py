@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 
 #: Features of a triangle: its face, its edges AB, BC, CA, its corners A, B, C.
 _FACE, _AB, _BC, _CA, _A, _B, _C = 0, 1, 2, 3, 4, 5, 6
@@ -72,7 +72,7 @@ def fill_boxes(tree: Tree) -> None:
             boxes[node, 3 + a] = max(boxes[2 * node + 1, 3 + a], boxes[2 * node + 2, 3 + a])
 
 
-@njit
+@helper
 def _box_distance2(boxes: FloatArray, node: int, x: float, y: float, z: float) -> float:
     if boxes[node, 0] > boxes[node, 3]:
         return math.inf
@@ -82,7 +82,7 @@ def _box_distance2(boxes: FloatArray, node: int, x: float, y: float, z: float) -
     return dx * dx + dy * dy + dz * dz
 
 
-@njit
+@helper
 def _on_triangle(corners: FloatArray, t: int, x: float, y: float, z: float, found: FloatArray) -> int:
     """The closest point of a triangle; fills ``found`` with it and its squared distance, gives the feature it is on."""
     ax, ay, az = corners[t, 0], corners[t, 1], corners[t, 2]

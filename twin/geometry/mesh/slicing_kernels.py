@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import helper, njit
 
 
 @njit
@@ -288,13 +288,13 @@ def clean_rings(
     return count
 
 
-@njit
+@helper
 def _straight(au: int, av: int, bu: int, bv: int, cu: int, cv: int) -> bool:
     """Whether b lies on the line through a and c, exactly."""
     return (bu - au) * (cv - bv) == (bv - av) * (cu - bu)
 
 
-@njit
+@helper
 def _twice_area(whole: NDArray[np.int64], first: int, last: int) -> float:
     """Twice the area of a ring, counter-clockwise positive."""
     total = 0.0
@@ -305,7 +305,7 @@ def _twice_area(whole: NDArray[np.int64], first: int, last: int) -> float:
     return total
 
 
-@njit
+@helper
 def _side(au: int, av: int, bu: int, bv: int, cu: int, cv: int) -> int:
     """1, 0, -1: c lies left of, on, right of the line from a to b, exactly."""
     cross = (bu - au) * (cv - av) - (bv - av) * (cu - au)
@@ -332,7 +332,7 @@ def simple_planes(whole: NDArray[np.int64], rings: NDArray[np.int64], simple: ND
         begin = end
 
 
-@njit
+@helper
 def _any_touch(whole: NDArray[np.int64], rings: NDArray[np.int64]) -> bool:
     """Whether edges of rings meet anywhere but at the corner between neighbours: a sweep along u."""
     count = 0
@@ -382,7 +382,7 @@ def _any_touch(whole: NDArray[np.int64], rings: NDArray[np.int64]) -> bool:
     return False
 
 
-@njit
+@helper
 def _well_nested(whole: NDArray[np.int64], rings: NDArray[np.int64]) -> bool:
     """Whether just outside of every counter-clockwise ring there is nothing, and of every clockwise one material."""
     for r in range(len(rings)):

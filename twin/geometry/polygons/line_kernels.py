@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import njit
+from twin.jit import inlined, njit
 
 
 class LineEnds(NamedTuple):
@@ -30,7 +30,7 @@ class LineEnds(NamedTuple):
     slopes: FloatArray
 
 
-@njit
+@inlined
 def _sort(ends: FloatArray, slopes: FloatArray, first: int, last: int) -> None:
     """Insertion sort of a few ends with their slopes."""
     for i in range(first + 1, last):
@@ -42,7 +42,7 @@ def _sort(ends: FloatArray, slopes: FloatArray, first: int, last: int) -> None:
         ends[j], slopes[j] = end, slope
 
 
-@njit
+@inlined
 def join_sorted(ends: FloatArray, slopes: FloatArray, begin: int, first: int, last: int, merge: float) -> int:
     """Sort the ends [first, last) and append them to those from ``begin`` on, without neighbours that meet.
 
