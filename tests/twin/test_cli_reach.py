@@ -98,4 +98,4 @@ def test_an_open_part_is_refused(pocket: Path, capsys: pytest.CaptureFixture[str
     data = pocket.read_bytes()
     pocket.write_bytes(data[:80] + struct.pack("<I", 27) + data[84:-50])
     assert run(["reach", str(pocket), "--tool", "ball 4"]) == 1
-    assert "the surface leaks: 3 open edges around 1 hole" in capsys.readouterr().err
+    assert "the surface leaks: 1 hole of 3 open edges, " in capsys.readouterr().err

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from twin.arrays import FloatArray, frozen
 from twin.errors import MeshError
-from twin.geometry.mesh.slicing import MeshEdges, mesh_edges, mesh_sections, weld
+from twin.geometry.mesh.slicing import MeshEdges, mesh_sections, weld
 from twin.geometry.polygons.region import Region
 from twin.geometry.threads import run_all
 from twin.workpiece.solid_check import check_closed, check_orientation
@@ -20,6 +20,7 @@ from twin.workpiece.stl_file import stl_corners
 from twin.workpiece.stock import SliceSet, even_pitch, plane_counts, plane_positions
 from twin.workpiece.store import PLANE_AXES
 from twin.workpiece.units import TYPICAL_MM, UNITS_MM, unit_of
+from twin.workpiece.weld import Mesh, welded
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
@@ -104,7 +105,8 @@ def solid(corners_mm: ArrayLike, name: str) -> Solid:
     """Join loose triangles to a solid.
 
     Vertices are rounded to 1e-5 mm first, so that triangles whose corners differ by rounding meet. Triangles with two
-    equal corners after that enclose nothing and are dropped; nothing else is mended.
+    equal corners after that enclose nothing and are dropped. Seams that are open by no more than
+    `twin.workpiece.weld.WELD_MM` are closed, which the solid's notes state; nothing else is mended.
 
     Args:
         corners_mm: shape (m, 3, 3), the corners of each triangle, counter-clockwise seen from outside.
@@ -121,17 +123,16 @@ def solid(corners_mm: ArrayLike, name: str) -> Solid:
         bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
         raise MeshError(f"{name}: triangle {bad[0] + 1} of {len(corners)} has a corner that is not a finite number")
     vertices, numbers = weld(corners.reshape(-1, 3))
-    triangles = numbers.reshape(-1, 3)
-    i, j, k = triangles.T
-    whole = (i != j) & (j != k) & (k != i)
-    if not whole.any():
+    mesh = Mesh.of(numbers.reshape(-1, 3), np.arange(len(corners)))
+    if len(mesh.triangles) == 0:
         raise MeshError(f"{name}: every one of its {len(corners)} triangles has no area; expected a closed surface")
-    triangles = np.ascontiguousarray(triangles[whole])
-    edges = mesh_edges(triangles)
-    check_closed(name, vertices, edges)
-    check_orientation(name, vertices, triangles)
-    vertices.flags.writeable = triangles.flags.writeable = False
-    return Solid(name, vertices, triangles, edges)
+    done = ""
+    if not mesh.closed:
+        mesh, done = welded(vertices, mesh)
+        check_closed(name, vertices, mesh)
+    check_orientation(name, vertices, mesh.triangles)
+    vertices.flags.writeable = mesh.triangles.flags.writeable = False
+    return Solid(name, vertices, mesh.triangles, mesh.edges, (f"{name}: {done}",) if done else ())
 
 
 def mesh_slices(mesh: Solid, pitch_mm: float) -> SliceSet:

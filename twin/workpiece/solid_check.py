@@ -11,33 +11,24 @@ from scipy.sparse.csgraph import connected_components
 
 from twin.arrays import FloatArray
 from twin.errors import MeshError
-from twin.geometry.mesh.slicing import MeshEdges
+from twin.workpiece.mesh_defects import defects
+from twin.workpiece.mesh_defects import point as text_of
+from twin.workpiece.weld import Mesh
 
-#: Number of positions that a message names.
-_NAMED = 3
 
-
-def check_closed(name: str, vertices_mm: FloatArray, edges: MeshEdges) -> None:
+def check_closed(name: str, vertices_mm: FloatArray, mesh: Mesh) -> None:
     """Every edge must be used as often in one direction as in the other.
 
     Raises:
-        MeshError: open edges, or triangles turned unlike their neighbours.
+        MeshError: otherwise, with the kind of every defect, its size and position.
     """
-    odd = (edges.forward + edges.backward) % 2 == 1
-    if odd.any():
-        ends = edges.ends[odd]
-        holes, span = _holes(vertices_mm, ends)
-        raise MeshError(
-            f"{name}: the surface leaks: {_count(len(ends), 'open edge')} around {_count(holes, 'hole')}, "
-            f"the largest {span:.5g} mm wide: {_positions(vertices_mm, ends)}; expected a closed surface"
-        )
-    turned = edges.forward != edges.backward
-    if turned.any():
-        ends = edges.ends[turned]
-        raise MeshError(
-            f"{name}: triangles are turned unlike their neighbours along {_count(len(ends), 'edge')}: "
-            f"{_positions(vertices_mm, ends)}; expected all counter-clockwise seen from outside"
-        )
+    if mesh.closed:
+        return
+    found, state = "; ".join(defects(vertices_mm, mesh)), "leaks" if mesh.open.any() else "is not closed"
+    raise MeshError(
+        f"{name}: the surface {state}: {found}; expected a closed surface, all triangles counter-clockwise seen from "
+        "outside"
+    )
 
 
 def check_orientation(name: str, vertices_mm: FloatArray, triangles: NDArray[np.int64]) -> None:
@@ -55,9 +46,10 @@ def check_orientation(name: str, vertices_mm: FloatArray, triangles: NDArray[np.
     for body in np.flatnonzero(volumes < -1e-12 * extent):
         point = vertices_mm[triangles[np.argmax(bodies == body), 0]]
         if winding_number(point, vertices_mm, triangles[bodies != body]) < 0.5:
+            at = text_of(point)
             which = f" (body {body + 1} of {len(volumes)})" if len(volumes) > 1 else ""
             raise MeshError(
-                f"{name}: the surface is inside out{which}: volume {volumes[body]:.6g} mm3 at {_point(point)}; "
+                f"{name}: the surface is inside out{which}: volume {volumes[body]:.6g} mm3 at {at}; "
                 "expected triangles counter-clockwise seen from outside"
             )
 
@@ -80,27 +72,3 @@ def _bodies(count: int, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
     _, labels = connected_components(graph, directed=False)
     _, bodies = np.unique(labels[triangles[:, 0]], return_inverse=True)
     return bodies.astype(np.int64)
-
-
-def _holes(vertices_mm: FloatArray, ends: NDArray[np.int64]) -> tuple[int, float]:
-    """How many connected runs open edges make, and the diagonal of the largest one's box."""
-    used, indices = np.unique(ends, return_inverse=True)
-    pairs = indices.reshape(-1, 2)
-    graph = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(used),) * 2)
-    holes, labels = connected_components(graph, directed=False)
-    points = vertices_mm[used]
-    spans = [float(np.linalg.norm(np.ptp(points[labels == hole], axis=0))) for hole in range(min(holes, 1000))]
-    return int(holes), max(spans)
-
-
-def _positions(vertices_mm: FloatArray, ends: NDArray[np.int64]) -> str:
-    named = [f"{_point(vertices_mm[a])} to {_point(vertices_mm[b])}" for a, b in ends[:_NAMED]]
-    return ", ".join(named) + (", ..." if len(ends) > _NAMED else "")
-
-
-def _point(p: FloatArray) -> str:
-    return "(" + ", ".join(f"{x:.6g}" for x in p) + ")"
-
-
-def _count(n: int, noun: str) -> str:
-    return f"{n} {noun}" + ("" if n == 1 else "s")

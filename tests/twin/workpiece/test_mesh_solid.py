@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -42,28 +43,97 @@ def test_binary_and_ascii_files_are_read_scaled_and_moved(tmp_path: Path, ascii_
     assert mesh.volume_mm3 == pytest.approx(254.0**3)
 
 
-def test_a_hole_is_reported_with_its_size_and_place() -> None:
+EXPECTED = "; expected a closed surface, all triangles counter-clockwise seen from outside"
+
+
+def test_a_hole_is_reported_with_its_width_and_place() -> None:
     keep = np.array([not np.all(t[:, 2] == 10.0) for t in cube()])
     message = refusal(cube()[keep])
     assert message == (
-        "part.stl: the surface leaks: 4 open edges around 1 hole, the largest 14.142 mm wide: "
-        "(0, 0, 10) to (0, 10, 10), (0, 0, 10) to (10, 0, 10), (0, 10, 10) to (10, 10, 10), ...; "
-        "expected a closed surface"
+        "part.stl: the surface leaks: 1 hole of 4 open edges, 10 mm wide: (0, 0, 10) to (0, 10, 10), "
+        f"(10, 0, 10) to (0, 0, 10), (0, 10, 10) to (10, 10, 10), ...{EXPECTED}"
     )
 
 
-def test_a_slit_is_reported_with_its_length() -> None:
+def test_the_width_of_a_round_hole_is_its_diameter() -> None:
+    pipe = np.array(trimesh.creation.cylinder(3.0, 5.0, sections=64).triangles)
+    message = refusal(pipe[[not np.all(t[:, 2] == 2.5) for t in pipe]])
+    found = re.match(r"part\.stl: the surface leaks: 1 hole of 64 open edges, ([\d.]+) mm wide: ", message)
+    assert found is not None and float(found[1]) == pytest.approx(6.0, rel=0.02)
+
+
+@pytest.mark.parametrize("gap", [0.002, 0.05, 0.3])
+def test_a_crack_is_reported_with_its_true_gap_and_length(gap: float) -> None:
+    """A corner that one of its triangles misses by a distance."""
     corners = cube()
-    corners[0, 0] += 0.01
-    assert re.match(
-        r"part\.stl: the surface leaks: 4 open edges around 1 hole, the largest 1\d\.\d+ mm", refusal(corners)
+    corners[0, 0] += np.array([0.6, 0.0, -0.8]) * gap
+    message = refusal(corners)
+    found = re.match(
+        r"part\.stl: the surface leaks: 1 crack of 4 open edges, ([\d.]+) mm wide and ([\d.]+) mm long: \(", message
+    )
+    assert found is not None and message.endswith(EXPECTED)
+    assert 0.6 * gap <= float(found[1]) <= 1.05 * gap
+    assert 9.0 < float(found[2]) < 25.0
+
+
+@pytest.mark.parametrize("gap", [1.5e-5, 2e-4, 9e-4])
+def test_a_crack_below_a_micrometre_is_welded_and_stated(gap: float) -> None:
+    corners = cube()
+    corners[0, 0] += np.array([0.6, 0.0, -0.8]) * gap
+    made = solid(corners, "part.stl")
+    assert made.volume_mm3 == pytest.approx(1000.0, rel=1e-4)
+    (note,) = made.notes
+    assert re.fullmatch(
+        r"part\.stl: 1 vertex on open edges welded, at most [\d.e-]+ mm apart \(tolerance 0.001 mm\)", note
     )
 
 
-def test_a_turned_triangle_is_reported_with_its_edges() -> None:
+def with_t_vertices(off: float, points: int) -> FloatArray:
+    """A cube with this many T-vertices on each of two sides of a triangle, shifted by a distance."""
+    a, b, c = cube()[0]
+    ab, bc = (np.linspace(p, q, points + 2)[1:-1] + off for p, q in ((a, b), (b, c)))
+    fan = [np.array([c, p, q]) for p, q in pairwise([a, *ab])]
+    fan += [np.array([ab[-1], p, q]) for p, q in pairwise([b, *bc, c])]
+    return np.concatenate((fan, cube()[1:]))
+
+
+@pytest.mark.parametrize("points", [1, 3])
+def test_edges_are_divided_at_t_vertices(points: int) -> None:
+    made = solid(with_t_vertices(0.0, points), "part.stl")
+    assert made.volume_mm3 == pytest.approx(1000.0)
+    assert made.notes == ("part.stl: 2 edges divided at T-vertices, at most 0 mm off (tolerance 0.001 mm)",)
+    assert solid(with_t_vertices(4e-4, points), "part.stl").volume_mm3 == pytest.approx(1000.0, rel=1e-3)
+    assert "crack" in refusal(with_t_vertices(0.05, points))
+
+
+def test_a_repeated_triangle_is_named() -> None:
+    """Whatever corner it begins with, and next to other defects."""
+    message = refusal(np.concatenate((cube(), cube()[4:5, [1, 2, 0]])))
+    wanted = "part.stl: the surface is not closed: 1 triangle is there twice: number 13 repeats 5 at ("
+    assert message.startswith(wanted) and message.endswith(f"){EXPECTED}")
+    both = refusal(np.concatenate((cube()[1:], cube()[4:6])))
+    assert "2 triangles are there twice: number 12 repeats 4 at" in both and "; 1 hole of 3 open edges, " in both
+
+
+def test_turned_triangles_are_named() -> None:
     corners = cube()
     corners[3] = corners[3, ::-1]
-    assert refusal(corners).startswith("part.stl: triangles are turned unlike their neighbours along 3 edges: (")
+    assert refusal(corners).startswith(
+        "part.stl: the surface is not closed: 1 triangle is turned unlike its neighbours (number 4), along 3 edges: ("
+    )
+    corners[7] = corners[7, ::-1]
+    assert "2 triangles are turned unlike their neighbours (number 4, 8), along " in refusal(corners)
+
+
+def test_a_sheet_that_touches_the_surface_is_named() -> None:
+    message = refusal(np.concatenate((cube(), [[[0, 0, 0], [10, 0, 0], [5, -5, 5]]])))
+    assert "1 loose sheet of 2 open edges, " in message
+    assert "1 edge where the surface touches itself, each of 3 triangles or more: (0, 0, 0) to (10, 0, 0)" in message
+
+
+def test_bodies_that_share_an_edge_are_closed() -> None:
+    made = solid(np.concatenate((cube(), cube() + np.array([10.0, 10.0, 0.0]))), "part.stl")
+    assert made.volume_mm3 == pytest.approx(2000.0) and made.notes == ()
 
 
 def test_a_mesh_turned_inside_out_is_refused_and_not_turned() -> None:
