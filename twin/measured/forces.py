@@ -11,7 +11,7 @@ import numpy as np
 from twin.arrays import FloatArray, frozen
 from twin.errors import MeasuredError
 from twin.measured.axes import AxisMap, Term, aliases, guess_map
-from twin.measured.log import AXES, Channel, ForceLog, RawLog, gaps_of, vector
+from twin.measured.log import AXES, LARGEST, Channel, ForceLog, RawLog, gaps_of, vector
 from twin.measured.read import read_log
 from twin.measured.settings import AS_IN_FILE, LogReading
 from twin.measured.units import ANGLE_NAME, find_unit
@@ -51,7 +51,7 @@ def force_log(raw: RawLog, reading: LogReading = AS_IN_FILE) -> ForceLog:
         scaled = any(abs(factor) != 1.0 for parts in terms.values() for factor, name in parts if name == column)
         factors[column], more = _newtons(raw, raw.columns[column], unit, scaled=scaled)
         notes += more
-    rows = np.all([np.isfinite(raw.columns[c].values) for c in used], axis=0)
+    rows = np.all([np.abs(raw.columns[c].values) < LARGEST for c in used], axis=0)
     if rows.sum() < 2:
         raise MeasuredError(
             f"{raw.source}: {int(rows.sum())} rows with numbers in {', '.join(used)}, expected at least 2"

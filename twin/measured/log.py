@@ -15,6 +15,8 @@ from twin.settings.force_on import ForceOn
 #: First and last moment that a gap lies between, s.
 Gap: TypeAlias = tuple[float, float]
 AXES = ("x", "y", "z")
+#: Larger numbers are damage: neither forces nor times.
+LARGEST = 1e30
 #: Two samples further apart than this many sampling intervals have a gap between them.
 GAP_INTERVALS = 1.75
 #: Samples are uneven when half of the steps are off by more than this part of the interval ...

@@ -10,7 +10,7 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.errors import MeasuredError
 from twin.measured.axes import aliases
-from twin.measured.log import GAP_INTERVALS, UNEVEN, UNEVEN_GAP, Channel, RawLog, gaps_of, listed, vector
+from twin.measured.log import GAP_INTERVALS, LARGEST, UNEVEN, UNEVEN_GAP, Channel, RawLog, gaps_of, listed, vector
 from twin.measured.settings import AS_IN_FILE, LogReading
 from twin.measured.table import Table
 from twin.measured.units import ANGLE_NAME, TIME_NAME, find_unit, split_unit
@@ -24,6 +24,8 @@ _EPOCH_S = (6e8, 4e9)
 _DAY_NUMBERS = ((30_000.0, 60_000.0), (720_000.0, 760_000.0))
 #: Over midnight a step may differ from the usual one by this many of it, or by this much.
 _DAY_JUMP, _DAY_JUMP_S = 3.0, 1e-3
+#: Rates outside are damage.
+_POSSIBLE_HZ = (1e-6, 1e12)
 #: Rates outside are a sign of a wrong unit of time.
 _PLAUSIBLE_HZ = (20.0, 1e7)
 
@@ -39,6 +41,9 @@ def raw_log(path: Path, table: Table, reading: LogReading = AS_IN_FILE) -> RawLo
         MeasuredError: neither a time column nor a rate; time that goes back; an unknown unit of time.
     """
     rate_hz, rpm = reading.rate_hz, reading.rpm
+    if table.rate_hz is not None and not _POSSIBLE_HZ[0] <= table.rate_hz <= _POSSIBLE_HZ[1]:
+        note = f"sampling rate {table.rate_hz:g} Hz in the file not used: not a rate of samples"
+        table = replace(table, rate_hz=None, notes=(*table.notes, note))
     at, notes = _time_column(table)
     if at is None and rate_hz is None and rpm is not None:
         angle = _angle_column(table, reading.angle_column)
@@ -163,7 +168,7 @@ def _from_column(
     if known is None or known[0] != "time":
         raise MeasuredError(f"{path}: time column {table.names[at]!r} is in {unit!r}, expected s, ms, us, ns or min")
     t_s = table.values[:, at] * known[1]
-    rows = np.isfinite(t_s)
+    rows = np.abs(t_s) < LARGEST
     notes = [] if rows.all() else [f"{int((~rows).sum())} rows without a time passed over"]
     t_s = t_s[rows]
     if len(t_s) < 2:

@@ -232,3 +232,37 @@ def test_a_start_that_one_channel_lacks_is_noted() -> None:
     aligned = on_one_clock(Path("x"), columns, ["a", "b"])
     assert aligned.start_s == 2.0
     assert aligned.notes == ["no start stated for b: taken as the earliest of the others"]
+
+
+def test_a_tdms_file_cut_short_is_noted(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    path = write_tdms(tmp_path / "a.tdms", Fx={}, Fy={}, Fz={})
+    path.write_bytes(path.read_bytes()[:-100])
+    log = read_forces(path)
+    assert any(n.startswith("damaged: Last segment of file has less data than expected") for n in log.notes)
+    assert "".join(capfd.readouterr()) == ""
+
+
+def test_numbers_that_are_damage_are_left_out(tmp_path: Path) -> None:
+    import h5py
+
+    values = force(from_zero())
+    values[3, 0], values[5, 1] = 1e300, np.inf
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["t"] = from_zero()
+        for i, axis in enumerate("xyz"):
+            file[f"F{axis}"] = values[:, i]
+            file[f"F{axis}"].attrs["unit"] = "kN"
+    log = read_forces(tmp_path / "a.h5")
+    assert len(log.t_s) == N - 2
+    assert any("2 rows without a number omitted" in n for n in log.notes)
+
+
+def test_a_rate_that_is_damage_is_not_used(tmp_path: Path) -> None:
+    import h5py
+
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.attrs["sampling_rate"] = 1e300
+        for i, axis in enumerate("xyz"):
+            file[f"F{axis}"] = force(from_zero())[:, i]
+    with pytest.raises(MeasuredError, match="no column of time among"):
+        read_forces(tmp_path / "a.h5")

@@ -17,6 +17,8 @@ _SAME_RATE = 1e-6
 _SAME_TIME = 0.01
 #: Channels must have this share of the longest one in common.
 _LEAST_COMMON = 0.5
+#: Starts are at most this far from the clock's zero; steps are larger, and smaller, than these.
+_LATEST_S, _STEPS_S = 1e12, (1e-12, 1e6)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +72,9 @@ def on_one_clock(path: Path, columns: Sequence[Named], needed: Sequence[str]) ->
         MeasuredError: needed columns at several rates, without a common time, or of very different lengths.
     """
     must = [c for c in columns if c.name in needed]
+    for column in must:
+        if column.start_s is not None and not abs(column.start_s) < _LATEST_S:
+            raise MeasuredError(f"{path}: {column.name} starts at {column.start_s:g} s, expected a time of a recording")
     rate = _rate(path, must)
     stated = [c.start_s for c in columns if c.start_s is not None]
     notes = []
@@ -100,7 +105,7 @@ def on_one_clock(path: Path, columns: Sequence[Named], needed: Sequence[str]) ->
 
 
 def _rate(path: Path, columns: Sequence[Named]) -> float | None:
-    rates = [c.rate_hz for c in columns if c.rate_hz]
+    rates = [c.rate_hz for c in columns if c.rate_hz and _STEPS_S[0] < 1.0 / c.rate_hz < _STEPS_S[1]]
     if rates and max(rates) / min(rates) - 1.0 > _SAME_RATE:
         listed = ", ".join(f"{c.name} {c.rate_hz:g} Hz" for c in columns if c.rate_hz)
         raise MeasuredError(f"{path}: channels at several rates: {listed}; choose a group of one rate by --group")

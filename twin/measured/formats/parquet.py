@@ -48,10 +48,8 @@ def _reason(error: Exception) -> str:
 
 def _check_sizes(path: Path, metadata: Any) -> None:
     """Refuse a table that is larger unpacked than measured forces can be."""
-    groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
-    chunks = [group.column(k) for group in groups for k in range(group.num_columns)]
     check_size(path, 8.0 * metadata.num_rows * metadata.num_columns, "its columns")
-    check_size(path, sum(chunk.total_uncompressed_size for chunk in chunks), "its columns")
+    check_size(path, sum(metadata.row_group(i).total_byte_size for i in range(metadata.num_row_groups)), "its columns")
 
 
 def _numbers(column: Any, kind: Any) -> tuple[Any, str]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +16,7 @@ from twin.measured.formats.arrays_in import columns_table
 from twin.measured.formats.one_clock import Named
 from twin.measured.table import Table
 
+_LONGEST_NOTE = 120
 #: LabVIEW writes the beginning of its own time where no start is known.
 _NO_START = np.datetime64("1970-01-01T00:00:00", "us")
 _UNIT_KEYS = ("unit_string", "NI_UnitDescription", "Unit", "unit", "NI_UnitSymbol")
@@ -27,7 +31,8 @@ def read_tdms(path: Path, group: str | None = None) -> Table:
     from nptdms import TdmsFile
 
     try:
-        file = TdmsFile.read(path)
+        with _warnings() as notes:
+            file = TdmsFile.read(path)
     except Exception as error:  # npTDMS raises many kinds on damaged files
         raise MeasuredError(f"{path}: no TDMS file that can be read: {error}") from error
     arrays: list[Named] = []
@@ -41,7 +46,32 @@ def read_tdms(path: Path, group: str | None = None) -> Table:
             step = float(properties.get("wf_increment", 0.0))
             arrays.append(Named(name, _unit(channel), values, 1.0 / step if step > 0.0 else None))
             starts[name] = properties.get("wf_start_time"), float(properties.get("wf_start_offset", 0.0))
-    return columns_table(path, "TDMS", _started(arrays, starts), {}, group)
+    read = columns_table(path, "TDMS", _started(arrays, starts), {}, group)
+    return replace(read, notes=(*read.notes, *notes))
+
+
+@contextmanager
+def _warnings() -> Iterator[list[str]]:
+    """The warnings that npTDMS would print: on data cut short, and the like."""
+    from nptdms.log import log_manager
+
+    texts: list[str] = []
+
+    class _Notes(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            text = record.getMessage()
+            texts.append(f"damaged: {text[:_LONGEST_NOTE]}{'...' if text[_LONGEST_NOTE:] else ''}")
+
+    handler, level = _Notes(), log_manager.console_handler.level
+    log_manager.console_handler.setLevel(logging.CRITICAL)
+    for logger in log_manager.loggers.values():
+        logger.addHandler(handler)
+    try:
+        yield texts
+    finally:
+        log_manager.console_handler.setLevel(level)
+        for logger in log_manager.loggers.values():
+            logger.removeHandler(handler)
 
 
 def _started(arrays: list[Named], starts: dict[str, tuple[Any, float]]) -> list[Named]:
