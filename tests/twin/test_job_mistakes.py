@@ -110,7 +110,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ),
     (
         {"tools__0__flute_length_mm": NOTHING},
-        "tools[0].flute_length_mm (tool 1): missing; expected a number above 0 (length of the cutting part, "
+        "tools[0].flute_length_mm (tool 1): missing; expected a number above 0 and at most 1000 (length of the cutting part, "
         "measured from the tip)",
     ),
     ({"tools__0__helix": 30}, "tools[0].helix (tool 1): unknown key; did you mean helix_deg?"),
@@ -170,7 +170,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ),
     (
         {"simulation__slice_pitch_mm": 1e-5},
-        "simulation.slice_pitch_mm = 1e-05: expected at least 0.00011, more than 1000000 slices do not fit in memory",
+        "simulation.slice_pitch_mm = 1e-05: expected at least 0.0031, finer slices of this stock do not fit in memory",
     ),
     (
         {"simulation__angle_step_deg": 7},

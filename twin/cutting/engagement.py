@@ -113,6 +113,11 @@ class Engager:
         self._gate = np.where(end_edge, math.sin(math.radians(DISH_DEG)), tolerance.gate)
         self._middle = 0.5 * (edges.bounds_mm[:-1] + edges.bounds_mm[1:])
 
+    @property
+    def entries(self) -> int:
+        """Entries of one map over the whole cutting part: rows times edge elements."""
+        return self._rows.cos.size * self._edges.z_mm.size
+
     def engage(
         self,
         tip_mm: FloatArray,

@@ -176,7 +176,7 @@ class Tool(Table):
     )
     teeth: int = Field(ge=1, le=100, description="number of flutes")
     helix_deg: float = Field(default=0.0, gt=-90.0, lt=90.0, description="helix angle, right-hand positive")
-    flute_length_mm: float = Field(gt=0.0, description="length of the cutting part, measured from the tip")
+    flute_length_mm: float = Field(gt=0.0, le=1000.0, description="length of the cutting part, measured from the tip")
     corner_radius_mm: float | None = Field(
         default=None, gt=0.0, description="corner radius: required for bull, optional for taper, not for other kinds"
     )

@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from twin.job.facts import tools_of
 from twin.job.job_file import RAPIDS, STOCKS
+from twin.job.limits import LIMITS
 from twin.job.tool_rules import TOOL_RULES
 from twin.settings.facts import Facts
 from twin.settings.problems import Problem, wrong
@@ -15,8 +16,6 @@ from twin.settings.problems import Problem, wrong
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
 
 _MESH_ONLY = ("unit", "stl_scale", "offset_mm")
-#: More slices than this in all are taken for a misplaced decimal point.
-_MOST_SLICES = 1_000_000
 #: Angles to propose in place of one that does not divide a turn.
 _EVEN_ANGLES_DEG = (0.1, 0.2, 0.25, 0.5, *(float(n) for n in range(1, 361) if 360 % n == 0))
 
@@ -122,18 +121,6 @@ def pitch_below_tools(facts: Facts, _folder: Path) -> Iterator[Problem]:
         yield wrong(("simulation", "slice_pitch_mm"), pitch, expected)
 
 
-def slices_countable(facts: Facts, _folder: Path) -> Iterator[Problem]:
-    """A pitch that makes millions of slices is a mistake."""
-    pitch = facts.get("simulation", "slice_pitch_mm")
-    low, high = facts.get("stock", "box_mm", "min"), facts.get("stock", "box_mm", "max")
-    if pitch is None or low is None or high is None:
-        return
-    extent = sum(h - a for a, h in zip(low, high, strict=True))
-    if extent / pitch > _MOST_SLICES:
-        expected = f"at least {extent / _MOST_SLICES:.3g}, more than {_MOST_SLICES} slices do not fit in memory"
-        yield wrong(("simulation", "slice_pitch_mm"), pitch, expected)
-
-
 def angle_divides_turn(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """Samples are at the same angles in every revolution."""
     angle = facts.get("simulation", "angle_step_deg")
@@ -178,7 +165,7 @@ RULES: tuple[Rule, ...] = (
     first_tool_known,
     tools_are_sound,
     pitch_below_tools,
-    slices_countable,
     angle_divides_turn,
+    *LIMITS,
     outputs_named_rightly,
 )

@@ -33,13 +33,14 @@ class SpindleClock:
         self._turned_steps = 0.0
         self._angle_rad = 0.0
 
-    def advance(self, t_s: float, duration_s: float, spindle_rpm: float) -> Turned:
+    def advance(self, t_s: float, duration_s: float, spindle_rpm: float, *, ends_only: bool = False) -> Turned:
         """Turn for a while; the samples that are taken meanwhile.
 
         Args:
             t_s: machine time at the beginning.
             duration_s: how long to turn.
             spindle_rpm: signed speed.
+            ends_only: of more than two samples return the first and the last only.
 
         Returns:
             Times and signed spindle angles of the samples in [t_s, t_s + duration_s), both of shape (n,).
@@ -50,7 +51,9 @@ class SpindleClock:
         rate = abs(spindle_rpm) / 60.0 * self._rows
         before = self._turned_steps
         after = before + rate * duration_s
-        numbers = np.arange(math.ceil(before - _EDGE), math.ceil(after - _EDGE), dtype=np.float64)
+        first, end = math.ceil(before - _EDGE), math.ceil(after - _EDGE)
+        few = ends_only and end - first > 2
+        numbers = np.array([first, end - 1.0]) if few else np.arange(first, end, dtype=np.float64)
         times = t_s + np.maximum(0.0, (numbers - before) / rate)
         angles = self._angle_rad + sense * (numbers - before) * self._step_rad
         self._turned_steps = after

@@ -22,6 +22,8 @@ from twin.workpiece.stock import SliceSet
 
 #: Height of the gauge point's reference position above the highest point of stock and longest tool, mm.
 HOME_CLEARANCE_MM = 100.0
+#: Motions that are longer than this are taken for a mistake.
+_LONGEST_S, _FARTHEST_MM = 1e9, 1e7
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -90,6 +92,11 @@ class ProgramMoves:
                     raise ReplayError(f"{item.place}: tool T{item.tool} is not in the job; expected one of {known}")
                 yield tool_change_s
             elif isinstance(item, Move):
+                if not (item.duration_s < _LONGEST_S and item.length_mm < _FARTHEST_MM):
+                    raise ReplayError(
+                        f"{self.file}:{item.nc_line}: {item.length_mm:.3g} mm in {item.duration_s:.3g} s; expected a "
+                        f"motion or dwell below {_FARTHEST_MM:g} mm and {_LONGEST_S:g} s: check the units and F"
+                    )
                 if item.tool == 0 and not item.rapid and item.length_mm > 0.0:
                     raise ReplayError(
                         f"{self.file}:{item.nc_line}: feed motion without a tool in the spindle; "

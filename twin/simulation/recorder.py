@@ -48,6 +48,10 @@ class Recorder:
         self._totals = Totals(self._descriptions)
         self._steps = 0
 
+    def samples_in(self, duration_s: float, spindle_rpm: float) -> float:
+        """How many force samples a duration has, about."""
+        return duration_s * abs(spindle_rpm) / 60.0 * self._samples_per_revolution
+
     def event(self, event: Event) -> NcEvent:
         """The record of an event that is not a motion."""
         if isinstance(event, Block):
@@ -59,7 +63,7 @@ class Recorder:
 
     def air_step(self, move: Move, start_mm: FloatArray, end_mm: FloatArray, duration_s: float) -> Step:
         """The record of a step that cuts nothing: the spindle turns on."""
-        turned = self.clock.advance(self.t_s, duration_s, move.spindle_rpm)
+        turned = self.clock.advance(self.t_s, duration_s, move.spindle_rpm, ends_only=True)
         return self.step(move, start_mm, end_mm, duration_s, turned, IN_AIR)
 
     def step(

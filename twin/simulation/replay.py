@@ -17,6 +17,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cutting.engagement import Positions
+from twin.errors import ReplayError
 from twin.job import Job
 from twin.motion.path import Move
 from twin.motion.sweep import SweptVolume
@@ -32,6 +33,8 @@ from twin.workpiece.trislice import TriSlices
 
 #: Steps of a motion that are solved together, whatever the number of threads.
 _STEPS_TOGETHER = 64
+#: Most steps of one motion, and most force samples of one step and of steps that are solved together.
+_MOST_STEPS, _MOST_SAMPLES, _SAMPLES_TOGETHER = 10_000_000, 5_000_000, 1_000_000
 
 
 def replayed(setup: Setup) -> Iterator[Record]:
@@ -76,14 +79,31 @@ def _steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iterator[
     along = end - start
     length = float(np.linalg.norm(along))
     count = max(1, math.ceil(length / setup.step_mm * (1.0 - 1e-9)))
-    ends = start + along * (np.arange(count + 1) / count)[:, None]
     step_s = duration_s / count
+    samples = setup.recorder.samples_in(step_s, move.spindle_rpm)
+    _refuse_endless(move, count, samples, setup)
+    together = max(1, min(_STEPS_TOGETHER, int(_SAMPLES_TOGETHER / max(1.0, samples))))
+    ends = start + along * (np.arange(count + 1) / count)[:, None]
     pending = setup.material.pending(tool.number, start, along / length)
     turns = setup.recorder.clock.turns(setup.recorder.t_s, step_s, move.spindle_rpm)
-    begun = _begun(move, tool, ends, along / length, pending, turns, setup.solver)
+    begun = _begun(move, tool, ends, along / length, pending, turns, setup.solver, together)
     for first, turned, answer in one_ahead(begun):
         for i, (samples, solved) in enumerate(zip(turned, answer(), strict=True), start=first):
             yield setup.recorder.step(move, ends[i], ends[i + 1], step_s, samples, solved)
+
+
+def _refuse_endless(move: Move, steps: int, samples: float, setup: Setup) -> None:
+    """Refuses a motion of so many steps, or steps of so many samples, that a number must be wrong."""
+    at = f"{setup.program}:{move.nc_line}"
+    if steps > _MOST_STEPS:
+        raise ReplayError(
+            f"{at}: a motion of {steps:.3g} steps; expected at most {_MOST_STEPS:g}, a larger simulation.step_mm"
+        )
+    if samples > _MOST_SAMPLES:
+        raise ReplayError(
+            f"{at}: {samples:.3g} force samples in one step at F{move.feed_mm_min:g} S{abs(move.spindle_rpm):g}; "
+            f"expected at most {_MOST_SAMPLES:g}, a higher feed or a larger simulation.angle_step_deg"
+        )
 
 
 def _begun(
@@ -94,6 +114,7 @@ def _begun(
     pending: SweptVolume,
     turns: Iterator[Turned],
     solver: StepSolver,
+    together: int,
 ) -> Iterator[tuple[int, list[Turned], Callable[[], list[Solved]]]]:
     """Begin to solve the steps of a line, many together.
 
@@ -102,12 +123,13 @@ def _begun(
         feed: shape (3,), unit vector along them.
         pending: sweeps that are not yet subtracted from the slices.
         turns: times and spindle angles of each step's samples.
+        together: how many steps are solved together.
 
     Yields:
         Number of the first step, the samples of each, and a function that waits for the answer.
     """
-    for first in range(0, len(ends) - 1, _STEPS_TOGETHER):
-        part = ends[first : first + _STEPS_TOGETHER + 1]
+    for first in range(0, len(ends) - 1, together):
+        part = ends[first : first + together + 1]
         n = len(part) - 1
         turned = list(islice(turns, n))
         at = Positions(

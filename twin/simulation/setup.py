@@ -34,6 +34,7 @@ class Setup:
     """Everything that the replay of a job's motions needs.
 
     Attributes:
+        program: name of the NC program, for messages.
         header: first record of the run.
         moves: the program's motions and its other events, in order.
         tools: by number.
@@ -47,6 +48,7 @@ class Setup:
         tolerance: of geometry and physics.
     """
 
+    program: str
     header: RunHeader
     moves: ProgramMoves
     tools: Mapping[int, ToolSetup]
@@ -86,6 +88,7 @@ def prepare(job: Job, *, threads: int | None = None, preview: bool = True) -> Se
     workpiece = PolygonSlices(slices) if fineness.store == "reference" else CellSlices(slices)
     frame_s = planned_time_s / FRAMES or math.inf
     return Setup(
+        program=str(job.program.file),
         header=run_header(job, workpiece, [t.record for t in tools.values()], planned_time_s),
         moves=moves,
         tools=tools,

@@ -22,8 +22,9 @@ from twin.simulation.tools import ToolSetup
 from twin.workpiece.trislice import TriSlices
 
 _T = TypeVar("_T")
-#: Steps that one thread works on at a time: enough to make calls cheap, few enough to stay in its cache.
-PART = 16
+#: Steps that one thread works on at a time: enough to make calls cheap, few enough to stay in its cache; and most
+#: entries of their engagement maps, for memory.
+PART, PART_ENTRIES = 16, 4_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,12 +79,13 @@ class StepSolver:
             A function that waits for the answer, one `Solved` per step.
         """
         tool.engager.prepare(at, self._workpiece)
+        size = max(1, min(PART, PART_ENTRIES // tool.engager.entries))
 
         def part(first: int) -> list[Solved]:
-            last = min(first + PART, len(at))
+            last = min(first + size, len(at))
             return self._part(tool, at.part(first, last), spindle_rad[first:last], spindle_rpm[first:last], pending)
 
-        firsts = range(0, len(at), PART)
+        firsts = range(0, len(at), size)
         parts = map(part, firsts) if self._pool is None else self._pool.map(part, firsts)
         return lambda: [solved for solveds in parts for solved in solveds]
 

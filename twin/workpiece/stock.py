@@ -12,13 +12,12 @@ from twin.arrays import FloatArray, frozen
 from twin.errors import StockError
 from twin.geometry.polygons.clip import DECIMALS
 from twin.geometry.polygons.region import Region
+from twin.workpiece.slice_limit import least_pitch_mm
 from twin.workpiece.store import PLANE_AXES
 
 AXIS_NAMES = "xyz"
 #: How far the polygon of a cylinder's section may deviate from the circle, where not given.
 CHORD_MM = 0.001
-#: More planes than this in one family are taken for a mistake in the pitch.
-MOST_PLANES = 1_000_000
 #: Part of a pitch by which an extent may exceed a whole number of pitches without one more plane.
 PITCH_SLACK = 1e-9
 
@@ -60,11 +59,12 @@ def plane_counts(low_mm: FloatArray, high_mm: FloatArray, pitch_mm: float) -> tu
     for name, low, high in zip(AXIS_NAMES, low_mm, high_mm, strict=True):
         if not high > low:
             raise StockError(f"the stock reaches from {low:g} to {high:g} mm along {name}; expected an extent above 0")
-        if (high - low) / pitch_mm > MOST_PLANES:
-            raise StockError(
-                f"slice pitch {pitch_mm:g} mm makes {(high - low) / pitch_mm:.3g} planes along {name}; "
-                f"expected at most {MOST_PLANES}"
-            )
+    least = least_pitch_mm((high_mm - low_mm).tolist())
+    if pitch_mm < (1.0 - 1e-9) * least:
+        raise StockError(
+            f"slice pitch {pitch_mm:g} mm; expected at least {least:.2g} mm, finer slices of a stock of "
+            f"{' x '.join(f'{e:g}' for e in high_mm - low_mm)} mm do not fit in memory"
+        )
     x, y, z = (max(1, math.ceil(float(e) / pitch_mm - PITCH_SLACK)) for e in high_mm - low_mm)
     return x, y, z
 
