@@ -110,8 +110,8 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ),
     (
         {"tools__0__flute_length_mm": NOTHING},
-        "tools[0].flute_length_mm (tool 1): missing; expected a number above 0 and at most 1000 (length of the cutting part, "
-        "measured from the tip)",
+        "tools[0].flute_length_mm (tool 1): missing; expected a number above 0 and at most 1000 (length of the "
+        "cutting part, measured from the tip)",
     ),
     ({"tools__0__helix": 30}, "tools[0].helix (tool 1): unknown key; did you mean helix_deg?"),
     (
