@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from gcode.events import Event, ToolChange
-from gcode.flow.interpreter import interpret
+from gcode.flow.interpreter import interpret, taken_dialect
 from gcode.language.program import read_program
 from gcode.settings import MachineSettings, ToolOffset
 from twin.arrays import FloatArray
@@ -127,7 +127,8 @@ def program_moves(
 
 def _axis_rapids(program: Program, machine: Machine) -> FloatArray | None:
     """Rates of the axes in rapids, None where the control moves in a straight line."""
-    if (machine.rapid or RAPIDS[program.dialect]) == "straight":
+    path = machine.rapid or RAPIDS[taken_dialect(read_program(Path(program.file)), program.dialect)[0].name]
+    if path == "straight":
         return None
     return np.array(machine.axis_rapid_mm_min or (machine.rapid_mm_min,) * 3)
 

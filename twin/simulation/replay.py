@@ -80,9 +80,9 @@ def _steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iterator[
     length = float(np.linalg.norm(along))
     count = max(1, math.ceil(length / setup.step_mm * (1.0 - 1e-9)))
     step_s = duration_s / count
-    samples = setup.recorder.samples_in(step_s, move.spindle_rpm)
-    _refuse_endless(move, count, samples, setup)
-    together = max(1, min(_STEPS_TOGETHER, int(_SAMPLES_TOGETHER / max(1.0, samples))))
+    per_step = setup.recorder.samples_in(step_s, move.spindle_rpm)
+    _refuse_endless(move, count, per_step, setup)
+    together = max(1, min(_STEPS_TOGETHER, int(_SAMPLES_TOGETHER / max(1.0, per_step))))
     ends = start + along * (np.arange(count + 1) / count)[:, None]
     pending = setup.material.pending(tool.number, start, along / length)
     turns = setup.recorder.clock.turns(setup.recorder.t_s, step_s, move.spindle_rpm)

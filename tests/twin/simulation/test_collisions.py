@@ -97,6 +97,7 @@ DIAGONAL = "G0 X0. Y0. Z50.\nZ5.\nX100. Y40.\nZ50."
         ("linuxcnc", None, False),
         ("grbl", None, False),
         ("haas", "straight", False),
+        ("auto", None, True),
         ("linuxcnc", "independent", True),
     ],
 )
