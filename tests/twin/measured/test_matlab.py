@@ -256,3 +256,24 @@ def test_clocks_of_data_sets_in_hdf5(tmp_path: Path) -> None:
     log = read_forces(tmp_path / "a.h5")
     np.testing.assert_allclose(log.force_n[:, 0], forces()[10:, 0], atol=0.005)
     np.testing.assert_allclose(log.force_n[:, 1], forces()[:-10, 1], atol=0.005)
+
+
+def test_channels_of_structs_with_their_own_starts(tmp_path: Path) -> None:
+    late = [{**c, "t0": 0.002 if c["name"] == "Fy" else 0.0} for c in CHANNELS]
+    log = read5(tmp_path, {"ch": struct_array(late)})
+    np.testing.assert_allclose(log.force_n[:, 0], X[10:])
+    np.testing.assert_allclose(log.force_n[:, 1], Y[:-10])
+    assert any("channels start at different times" in note for note in log.notes)
+
+
+def test_objects_next_to_forces_are_noted(tmp_path: Path) -> None:
+    def fill(file: Any) -> None:
+        for name, values in (("t", T), ("Fx", X), ("Fy", Y), ("Fz", Z)):
+            put(file, name, values[None], "double")
+        put(file, "when", np.array([[0xDD000000, 2]], np.uint32), "datetime", MATLAB_object_decode=np.int32(3))
+        file.create_group("T").attrs["MATLAB_class"] = np.bytes_("table")
+
+    log = read_forces(write73(tmp_path / "a.mat", fill))
+    np.testing.assert_allclose(log.force_n, forces())
+    noted = next(note for note in log.notes if note.startswith("not read: "))
+    assert "T (a MATLAB table" in noted and "when (a MATLAB datetime" in noted

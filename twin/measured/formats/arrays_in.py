@@ -63,6 +63,8 @@ def columns_table(
     aligned = on_one_clock(path, columns, needed)
     left += aligned.not_read
     notes = [f"of another length, not read: {', '.join(left[:6])}"] if left and not aligned.not_read else []
+    if refused:
+        notes.append(f"not read: {'; '.join(refused)}")
     rate_hz, start_s = clock_of(_near(scalars, origin[needed[-1]]))
     return table(
         path,

@@ -50,7 +50,7 @@ class _Reader:
         if "MATLAB_object_decode" in node.attrs or class_name == "function_handle":
             return Opaque(class_name or "object")
         if isinstance(node, h5py.Group):
-            return self._struct(node, level)
+            return self._struct(node, level) if class_name in ("", "struct") else Opaque(class_name)
         if "MATLAB_empty" in node.attrs:
             return None
         if h5py.check_ref_dtype(node.dtype) is not None:

@@ -16,6 +16,8 @@ _LABELS = ("name", "label", "channel", "channelname", "signalname", "title")
 _SAMPLES = ("data", "values", "value", "samples", "y", "signal")
 _UNITS = ("unit", "units", "yunit")
 _TIMES = ("time", "t", "x", "times")
+_STARTS = ("t0", "start", "starttime", "start_time", "wf_start_offset")
+_STEPS = ("dt", "delta", "increment", "xinc", "wf_increment")
 #: Largest deviation of a channel's steps from their median, as a part of it, for even times.
 _EVEN = 1e-3
 #: How to save what cannot be read.
@@ -145,10 +147,17 @@ def _channel(path: str, fields: Mapping[str, Value]) -> Named | None:
     unit = next((v for k in _UNITS if isinstance(v := lower.get(k), str)), "")
     parent = path.rpartition("/")[0] if path.endswith(")") else path
     rate, start = _clock(next((v for k in _TIMES if isinstance(v := lower.get(k), np.ndarray)), None), samples.size)
-    step = next((v for k in ("dt", "delta", "increment", "xinc") if isinstance(v := lower.get(k), np.ndarray)), None)
-    if rate is None and step is not None and step.size == 1 and float(step.reshape(())) > 0.0:
-        rate = 1.0 / float(step.reshape(()))
+    step, given = _one(lower, _STEPS), _one(lower, _STARTS)
+    if rate is None and step is not None and step > 0.0:
+        rate = 1.0 / step
+    start = given if start is None else start
     return Named(f"{parent}/{label}" if parent else label, unit, samples, rate, start)
+
+
+def _one(fields: Mapping[str, Value], names: Sequence[str]) -> float | None:
+    """The first of some fields that is a single number."""
+    found = (fields.get(name) for name in names)
+    return next((float(v.reshape(())) for v in found if isinstance(v, np.ndarray) and v.size == 1), None)
 
 
 def _clock(times: FloatArray | None, count: int) -> tuple[float | None, float | None]:

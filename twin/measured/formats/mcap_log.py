@@ -27,10 +27,9 @@ def read_mcap(path: Path, group: str | None = None) -> Table:
         found = read_numbers(path, group)
     except ArchiveError as error:
         raise MeasuredError(str(error)) from error
+    notes = [*found.notes, *([f"fields not read: {', '.join(found.not_read)}"] if found.not_read else [])]
     rows = [(name, "", values) for name, values in found.columns.items()]
-    return table(
-        path, f"MCAP, topic {found.topic}", rows, row_word="message", notes=found.notes, not_read=found.not_read
-    )
+    return table(path, f"MCAP, topic {found.topic}", rows, row_word="message", notes=notes, not_read=found.not_read)
 
 
 def _run(path: Path) -> Table:

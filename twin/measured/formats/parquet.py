@@ -37,8 +37,9 @@ def read_parquet(path: Path) -> Table:
             left.append(f"{name} ({field.type})")
         else:
             columns.append((name, unit or _unit(field.metadata), values))
+    notes = [f"columns not read: {', '.join(left)}"] if left else []
     rate = (read.schema.metadata or {}).get(b"rate_hz")
-    return table(path, "Parquet", columns, rate_hz=_number(rate), row_word="row", not_read=left)
+    return table(path, "Parquet", columns, rate_hz=_number(rate), row_word="row", notes=notes, not_read=left)
 
 
 def _reason(error: Exception) -> str:
