@@ -42,6 +42,8 @@ def test_what_is_not_given_has_the_documented_default(tmp_path: Path) -> None:
         "rapid": None,
         "rapid_mm_min": 48000.0,
         "axis_rapid_mm_min": None,
+        "max_feed_mm_min": None,
+        "max_spindle_rpm": None,
         "tool_change_s": 0.0,
         "home_mm": None,
         "start_mm": None,

@@ -85,6 +85,12 @@ class Machine(Table):
     axis_rapid_mm_min: Annotated[Point | None, Key(unset="rapid_mm_min for each")] = Field(
         default=None, description="rapid traverse rates of X, Y and Z (independent), above 0, mm/min"
     )
+    max_feed_mm_min: Annotated[float | None, Key(unset="rapid_mm_min")] = Field(
+        default=None, gt=0.0, description="highest feed of the machine, mm/min; a program above it gets a warning"
+    )
+    max_spindle_rpm: Annotated[float | None, Key(unset="not checked")] = Field(
+        default=None, gt=0.0, description="highest spindle speed, rev/min; a program above it gets a warning"
+    )
     tool_change_s: float = Field(default=0.0, ge=0.0, description="time of one tool change, s")
     home_mm: Annotated[Point | None, Key(unset="above the stock")] = Field(
         default=None, description="position of the gauge point at the G28 reference point, mm"

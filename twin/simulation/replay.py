@@ -93,7 +93,7 @@ def _steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iterator[
 
 
 def _refuse_endless(move: Move, steps: int, samples: float, setup: Setup) -> None:
-    """Refuses a motion of so many steps, or steps of so many samples, that a number must be wrong."""
+    """Refuses a motion with far too many steps, or steps with far too many samples: a number must be wrong."""
     at = f"{setup.program}:{move.nc_line}"
     if steps > _MOST_STEPS:
         raise ReplayError(

@@ -50,7 +50,13 @@ def replay(
     force: Annotated[
         bool, typer.Option("--force", help="Replace output files that were not made from this job file.")
     ] = False,
-    strict: Annotated[bool, typer.Option("--strict", help="Stop at the first collision, with exit code 3.")] = False,
+    strict: Annotated[
+        bool,
+        typer.Option(
+            "--strict",
+            help="Stop at the first collision, with exit code 3; implausible numbers are errors, exit code 1.",
+        ),
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as one JSON object.")] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print no progress and no summary, only warnings and errors.")
@@ -113,8 +119,8 @@ def replay(
         _print_json(outcome, {"job": job_file, "mcap": mcap, "rrd": rrd}, job.output.force_on)
     elif not quiet:
         _print_summary(outcome, {"archive": mcap, "recording": rrd}, job.output.force_on)
-    _print_warnings(outcome)
-    raise typer.Exit(_exit_code(outcome))
+    _print_warnings(outcome, strict=strict)
+    raise typer.Exit(_exit_code(outcome, strict=strict))
 
 
 def _program_values(
@@ -150,21 +156,22 @@ def _print_summary(outcome: Outcome, files: dict[str, Path | None], force_on: st
             console.print(f"{what.capitalize():<10} {path}", markup=False, soft_wrap=True)
 
 
-def _print_warnings(outcome: Outcome) -> None:
+def _print_warnings(outcome: Outcome, *, strict: bool) -> None:
     from twin.cli.console import fail, warn
 
     if outcome.refused is not None:
         fail(f"stopped at a collision (--strict): {outcome.refused.message}")
         return
+    errors = outcome.watch.doubts(outcome.summary) if strict else []
     for message in outcome.watch.warnings(outcome.summary):
-        warn(message)
+        (fail if message in errors else warn)(message)
     if outcome.signal_number is not None:
         warn(f"stopped at {outcome.summary.machine_time_s:.1f} s of machine time; outputs have the run up to there")
 
 
-def _exit_code(outcome: Outcome) -> int:
+def _exit_code(outcome: Outcome, *, strict: bool) -> int:
     if outcome.refused is not None:
         return exit_codes.COLLISION
     if outcome.signal_number is not None:
         return exit_codes.SIGNAL + outcome.signal_number
-    return exit_codes.OK
+    return exit_codes.ERROR if strict and outcome.watch.doubts(outcome.summary) else exit_codes.OK

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from twin.cli.show.words import plural
 from twin.record import Collision, CollisionKind, NcEvent, Record, RunHeader, RunSummary, Step
+from twin.run.plausibility import Plausibility
 
 #: More collisions than this are counted and not kept.
 MOST_COLLISIONS = 1000
@@ -65,6 +66,7 @@ class Watch:
         self.header: RunHeader | None = None
         self.collisions: list[Collision] = []
         self.t_s = 0.0
+        self._plausibility = Plausibility()
         self._groups: dict[tuple[int, int, CollisionKind], CollisionGroup] = {}
         self._notices: dict[str, tuple[int, int]] = {}
         self._feeds = _Extent()
@@ -77,6 +79,7 @@ class Watch:
 
     def take(self, record: Record) -> None:
         """Take one record."""
+        self._plausibility.take(record)
         if isinstance(record, Step):
             self._step(record)
         elif isinstance(record, NcEvent):
@@ -90,7 +93,11 @@ class Watch:
 
     def warnings(self, summary: RunSummary) -> list[str]:
         """Warnings for the user, one line each."""
-        return [*self._collided(summary), *self._missed(summary), *self._without_effect()]
+        return [*self._collided(summary), *self.doubts(summary), *self._without_effect()]
+
+    def doubts(self, summary: RunSummary) -> list[str]:
+        """The warnings that are errors in a strict replay: nothing was cut, or numbers are not plausible."""
+        return [*self._missed(summary), *self._plausibility.warnings(summary)]
 
     def _step(self, step: Step) -> None:
         self.t_s = step.t_s + step.duration_s
