@@ -19,6 +19,13 @@ for name in ("FORCE_COLOR", "GITHUB_ACTIONS", "NO_COLOR", "PY_COLORS", "TTY_COMP
 os.environ["TERM"] = "xterm"
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Options of the mutated inputs of ``tests/test_fuzz.py``."""
+    group = parser.getgroup("mutated inputs")
+    group.addoption("--fuzz-seconds", type=float, default=0.0, help="mutate input files for this time in all")
+    group.addoption("--fuzz-seed", type=int, default=1, help="seed of the mutations")
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """One process for each processor, but none for a few test files: starting processes takes longer than those."""

@@ -30,7 +30,7 @@ from twin.record import Attachment
 #: Opcode and length before every record.
 HEAD = struct.Struct("<BQ")
 #: Errors that the libraries raise on inconsistent bytes.
-DAMAGE = (ValueError, KeyError, TypeError, struct.error, McapError, DecodeError)
+DAMAGE = (ValueError, KeyError, TypeError, AttributeError, OverflowError, struct.error, McapError, DecodeError)
 #: Footer record and closing magic: the last bytes of a complete file.
 FOOTER_BYTES = HEAD.size + 20 + len(MAGIC)
 _FIXED_LENGTHS: dict[int, int] = {Opcode.FOOTER: 20, Opcode.DATA_END: 4}

@@ -25,6 +25,9 @@ from twin.workpiece.weld import Mesh, welded
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
+#: Coordinates are joined as whole multiples of 1e-5 mm; no machine is nearly so large.
+_LARGEST_MM = 1e9
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solid:
@@ -122,6 +125,8 @@ def solid(corners_mm: ArrayLike, name: str) -> Solid:
     if not np.isfinite(corners).all():
         bad = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
         raise MeshError(f"{name}: triangle {bad[0] + 1} of {len(corners)} has a corner that is not a finite number")
+    if (largest := float(np.abs(corners).max())) > _LARGEST_MM:
+        raise MeshError(f"{name}: a corner is {largest:g} mm from the origin; expected at most {_LARGEST_MM:g} mm")
     vertices, numbers = weld(corners.reshape(-1, 3))
     mesh = Mesh.of(numbers.reshape(-1, 3), np.arange(len(corners)))
     if len(mesh.triangles) == 0:

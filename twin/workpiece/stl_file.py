@@ -73,7 +73,8 @@ def _binary_corners(name: str, data: bytes) -> FloatArray:
             f"expected {wanted} for {count} triangles, as its header states"
         )
     records = np.frombuffer(data[:wanted], dtype=_RECORD, offset=_HEADER)
-    return records["corners"].astype(np.float64)
+    with np.errstate(invalid="ignore"):  # a signalling NaN; it is refused as not finite
+        return records["corners"].astype(np.float64)
 
 
 def _text(data: bytes) -> str | None:

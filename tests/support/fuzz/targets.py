@@ -1,0 +1,247 @@
+"""Every kind of input file: sound ones to begin with, how they are mutated, and the function that reads them."""
+
+from __future__ import annotations
+
+import random
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache, partial
+from pathlib import Path
+
+from support.fuzz.mutations import STL, TABLE, TOML, Mutation, binary_mutated, mutated, text_mutated
+
+#: Files next to an input, which it names.
+Neighbours = dict[str, bytes]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Target:
+    """One kind of input.
+
+    Attributes:
+        suffix: of the file's name.
+        seeds: sound files.
+        once: one mutation.
+        use: reads a file; raises `TwinError` or `GcodeError` for one that it refuses, and nothing else.
+        neighbours: files in the same folder.
+    """
+
+    suffix: str
+    seeds: Callable[[], list[bytes]]
+    once: Mutation
+    use: Callable[[Path], object]
+    neighbours: Callable[[], Neighbours] = field(default=dict)
+
+    def input(self, name: str, seed: int, number: int) -> bytes:
+        """A mutated file, the same for the same numbers."""
+        source = random.Random(f"{name}/{seed}/{number}")
+        return mutated(source, source.choice(_seeds(name)), self.once)
+
+
+@cache
+def _seeds(name: str) -> list[bytes]:
+    return TARGETS[name].seeds()
+
+
+def _written(*writers: Callable[[Path], object]) -> list[bytes]:
+    """The bytes that functions write to a path."""
+    made = []
+    with tempfile.TemporaryDirectory() as folder:
+        for number, write in enumerate(writers):
+            path = Path(folder) / f"seed{number}"
+            write(path)
+            made.append(path.read_bytes())
+    return made
+
+
+def _log(name: str) -> Callable[[], list[bytes]]:
+    from support.measured_files import FORMATS
+
+    return lambda: _written(FORMATS[name][1])
+
+
+def _read_log(path: Path) -> object:
+    from twin.measured.read import read_log
+
+    return read_log(path)
+
+
+def _toml(tables: Callable[[], list[dict[str, object]]]) -> Callable[[], list[bytes]]:
+    from twin.settings.toml_text import toml_text
+
+    return lambda: [toml_text(data).encode() for data in tables()]
+
+
+def _jobs() -> list[dict[str, object]]:
+    from support.job_files import job_data
+
+    return [job_data()]
+
+
+def _job_neighbours() -> Neighbours:
+    from support.job_files import PROGRAM
+
+    return {"slot.nc": PROGRAM.encode(), "mold.stl": _boxes()[0], "a.csv": b"Fx,Fy,Fz\n1,2,3\n1,2,3\n"}
+
+
+def _load_job(path: Path) -> object:
+    from twin.job import load_job
+
+    return load_job(path)
+
+
+def _cuts() -> list[dict[str, object]]:
+    cut = {"name": "A", "log": "a.csv", "axial_depth_mm": 2.0, "radial_depth_mm": 1.5, "feed_mm_min": 100}
+    return [
+        {
+            "tool": {"kind": "ball", "diameter_mm": 8.0, "teeth": 2, "helix_deg": 30.0},
+            "defaults": {"direction": "down", "spindle_rpm": 3600, "force_on": "workpiece", "map": "x=-Fy,y=Fx,z=Fz"},
+            "fit": {"method": "waveform", "source": "made up"},
+            "cuts": [cut, {**cut, "name": "B", "feed_mm_min": 200}, {**cut, "name": "C", "feed_mm_min": 300}],
+        }
+    ]
+
+
+def _load_cuts(path: Path) -> object:
+    from twin.identification.cuts.load import load_cuts
+
+    return load_cuts(path)
+
+
+def _molds() -> list[bytes]:
+    return [(Path(__file__).parents[3] / "examples" / "mold" / "job.toml").read_bytes()]
+
+
+def _load_mold(path: Path) -> object:
+    from twin.moldmaking import load_mold
+
+    return load_mold(path)
+
+
+def _boxes() -> list[bytes]:
+    """A box as binary and as ASCII STL."""
+    import numpy as np
+
+    from support.small_parts import box
+    from twin.workpiece.from_mesh import stl_bytes
+
+    part = box((0, 0, 0), (10, 8, 5))
+    lines = ["solid box"]
+    for triangle in part.triangles:
+        corners = part.vertices_mm[triangle]
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        lines.append("facet normal {:g} {:g} {:g}\n outer loop".format(*(normal / np.linalg.norm(normal))))
+        lines += ["  vertex {:g} {:g} {:g}".format(*corner) for corner in corners]
+        lines.append(" endloop\nendfacet")
+    return [stl_bytes(part.vertices_mm, part.triangles), "\n".join([*lines, "endsolid box", ""]).encode()]
+
+
+def _mutated_stl(source: random.Random, data: bytes) -> bytes:
+    return text_mutated(source, data, STL) if data.startswith(b"solid") else binary_mutated(source, data)
+
+
+def _load_mesh(path: Path) -> object:
+    from twin.workpiece.from_mesh import load_mesh
+
+    return load_mesh(path)
+
+
+def _runs() -> list[bytes]:
+    """A short run without surfaces of the part but the first."""
+    from support.slot_run import SlotRun
+    from twin.record import WorkpiecePatch
+    from twin.sinks.mcap_sink import McapSink
+
+    def write(path: Path) -> None:
+        with McapSink(path) as sink:
+            for number, record in enumerate(SlotRun(step_mm=36.0, per_turn=1).records()):
+                if number < 2 or not isinstance(record, WorkpiecePatch):
+                    sink.write(record)
+
+    return _written(write)
+
+
+def _inside_mutated(source: random.Random, data: bytes) -> bytes:
+    from support.fuzz.mcap_inside import inside_mutated
+
+    return inside_mutated(source, data)
+
+
+def _read_run(path: Path) -> object:
+    from twin.archive import read_run, run_info
+
+    info = run_info(path, verify=True)
+    return info, list(read_run(path))
+
+
+def _programs() -> list[bytes]:
+    from support.fuzz_gcode import SEEDS
+
+    return [text.encode() for _, text in sorted(SEEDS.items())]
+
+
+def _mutated_program(source: random.Random, data: bytes) -> bytes:
+    from support.fuzz_gcode import MUTATIONS
+
+    text = source.choice(MUTATIONS)(source, data.decode("utf-8", "surrogatepass"))
+    return text[:20_000].encode("utf-8", "surrogatepass")
+
+
+def _check_program(path: Path) -> object:
+    from gcode.dialects import DIALECTS, dialect_named
+    from support.fuzz_gcode import assert_laws
+
+    text = path.read_bytes().decode("utf-8", "surrogatepass")
+    met = assert_laws(text, dialect_named(sorted(DIALECTS)[len(text) % len(DIALECTS)]))
+    if met.error is not None:
+        raise met.error
+    return met
+
+
+def _tools() -> list[bytes]:
+    return [b"T1 P1 Z50 D10 ;end mill\nT2 P2 Z60.5 D6.8\nT3 P3 X0 Y0 Z70 A0 D8 Q1 I90 J10\n"]
+
+
+def _read_tools(path: Path) -> object:
+    from gcode.tables import read_tool_table
+
+    return read_tool_table(path)
+
+
+def _parameters() -> list[bytes]:
+    return [b"5161\t0.000000\n5162\t0\n5163\t400\n5220\t1.000000\n5221\t10.5\n5222\t-3\n5223\t-40\n100\t1\n"]
+
+
+def _read_parameters(path: Path) -> object:
+    from gcode.tables import read_parameters
+
+    return read_parameters(path)
+
+
+_TOML, _TABLE = partial(text_mutated, pieces=TOML), partial(text_mutated, pieces=TABLE)
+
+
+def _log_target(name: str, suffix: str, once: Mutation) -> Target:
+    return Target(suffix=suffix, seeds=_log(name), once=once, use=_read_log)
+
+
+TARGETS: dict[str, Target] = {
+    "NC program": Target(suffix=".nc", seeds=_programs, once=_mutated_program, use=_check_program),
+    "tool table": Target(suffix=".tbl", seeds=_tools, once=_TABLE, use=_read_tools),
+    "parameter file": Target(suffix=".var", seeds=_parameters, once=_TABLE, use=_read_parameters),
+    "job": Target(suffix=".toml", seeds=_toml(_jobs), once=_TOML, use=_load_job, neighbours=_job_neighbours),
+    "test cuts": Target(suffix=".toml", seeds=_toml(_cuts), once=_TOML, use=_load_cuts, neighbours=_job_neighbours),
+    "mold job": Target(suffix=".toml", seeds=_molds, once=_TOML, use=_load_mold, neighbours=_job_neighbours),
+    "STL": Target(suffix=".stl", seeds=_boxes, once=_mutated_stl, use=_load_mesh),
+    "run": Target(suffix=".mcap", seeds=_runs, once=_inside_mutated, use=_read_run),
+    "log, CSV": _log_target("csv", ".csv", _TABLE),
+    "log, DynoWare": _log_target("dynoware", ".txt", _TABLE),
+    "log, LVM": _log_target("lvm", ".lvm", _TABLE),
+    "log, TDMS": _log_target("tdms", ".tdms", binary_mutated),
+    "log, MATLAB 5": _log_target("mat5", ".mat", binary_mutated),
+    "log, MATLAB 7.3": _log_target("mat73", ".mat", binary_mutated),
+    "log, HDF5": _log_target("hdf5", ".h5", binary_mutated),
+    "log, Parquet": _log_target("parquet", ".parquet", binary_mutated),
+    "log, MCAP": _log_target("foreign mcap", ".mcap", _inside_mutated),
+}
