@@ -306,7 +306,7 @@ def test_a_path_that_misses_the_stock_is_a_warning(use: Use, job: Path, capsys: 
         "warning: no material was cut: the feed motions are at X -6..66 Y 15..15 Z -2..-2, "
         "the stock is at X 0..60 Y 0..30 Z -20..0; check stock, machine.offsets and the tools' length_mm in the job"
     )
-    assert run(["replay", str(job), "-q", "--strict"]) == 1
+    assert run(["replay", str(job), "-q", "--strict", "--force"]) == 1
     assert capsys.readouterr().err.startswith("error: no material was cut: ")
 
 

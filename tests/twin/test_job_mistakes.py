@@ -263,7 +263,10 @@ def test_the_message_has_a_line_for_each_mistake_with_the_file_in_front(tmp_path
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("a = 1\n[program\n", "{path}:2:9: not valid TOML: expected ']' at the end of a table declaration"),
+        (
+            "a = 1\n[program\n",
+            "{path}:2:9: not valid TOML: expected ']' at the end of a table declaration; write [program]",
+        ),
         ("[program]\nfile = ", "{path}:2:8: not valid TOML: invalid value"),
         ("a = 1\na = 2\n", "{path}:2:6: not valid TOML: cannot overwrite a value"),
     ],

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numba
+from numba.core import types
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher
@@ -23,12 +24,22 @@ _NUMBA: Any = numba
 _RESULT: Any = CompileResult
 _DUMPS: Any = dumps
 _DISPATCHER: Any = CPUDispatcher
+_TYPES: Any = types
 # absent in a version of numba that does it in another way
 _FROM_PARTS, _TO_PARTS = _RESULT._rebuild, _RESULT._reduce
 
 
 class CompiledCodeOnly(_DISPATCHER):  # type: ignore[misc]
     """A compiled function without code for calls from Python, which would end the process without a message."""
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """What numba calls for arguments of these types: the same for all values of a whole number.
+
+        Numba would compile the function again for each whole number that a caller passes, and for a 0 that a loop
+        counts up from, without ever calling the result. For False and True it is compiled twice, which pays.
+        """
+        named = {name: _without_value(kind) for name, kind in kws.items()}
+        return super().get_call_template(tuple(map(_without_value, args)), named)
 
     def __call__(self, *_: Any, **__: Any) -> Any:
         """Refuse the call.
@@ -37,6 +48,11 @@ class CompiledCodeOnly(_DISPATCHER):  # type: ignore[misc]
             TypeError: always.
         """
         raise TypeError(f"{self.__name__} can be called from compiled code only; @njit makes it callable from Python")
+
+
+def _without_value(kind: Any) -> Any:
+    """The type of a whole number whose value numba knows, without the value; other types as they are."""
+    return kind.literal_type if isinstance(kind, _TYPES.IntegerLiteral) else kind
 
 
 class KeptCode(NullCache):

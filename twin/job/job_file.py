@@ -158,7 +158,9 @@ class Cutting(Table):
     Kre: float = Field(description="radial, per edge length, N/mm")
     Kac: float = Field(description="axial, per chip area, N/mm2")
     Kae: float = Field(description="axial, per edge length, N/mm")
-    source: str = Field(min_length=1, pattern=r"\S", description="source of the coefficients, e.g. a paper or a test")
+    source: Annotated[str | None, Key(unset="a warning")] = Field(
+        default=None, min_length=1, pattern=r"\S", description="source of the coefficients, e.g. a paper or a test"
+    )
     convention: Literal["meridian"] = Field(
         default="meridian",
         description="edge length that Kte, Kre and Kae refer to: along the tool's profile (meridian), not the helix",

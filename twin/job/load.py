@@ -33,7 +33,7 @@ def load_job(path: str | PathLike[str]) -> Job:
         JobError: the file cannot be read, is not TOML, or has mistakes; the message has every one.
     """
     path = Path(path)
-    data, text = read_toml(path, "a job file", JobError)
+    data, text = read_toml(path, "a job file", JobError, own="program")
     return _job(data, path, text)
 
 

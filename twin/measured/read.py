@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from os import PathLike
 from pathlib import Path
 
 from twin.errors import MeasuredError
-from twin.measured.apart import read_apart
+from twin.measured.isolated import isolated
 from twin.measured.log import RawLog
 from twin.measured.settings import AS_IN_FILE, LogReading
 from twin.measured.table import Table
@@ -66,14 +65,15 @@ def _binary(path: Path, group: str | None) -> Table | None:
     if begin.startswith(_MCAP_MAGIC):
         return mcap_log.read_mcap(path, group)
     if begin.startswith(_PARQUET_MAGIC):
-        return read_apart(parquet.read_parquet, path)
+        return isolated(path, lambda: parquet.read_parquet(path), "pyarrow.parquet")
     if begin.startswith(_TDMS_MAGIC):
         return tdms.read_tdms(path, group)
-    if begin.startswith(_MATLAB_MAGIC) or path.suffix.lower() == ".mat":
-        read = partial(matlab.read_matlab, group=group)
-        return read_apart(read, path) if matlab.is_hdf5(path) else read(path)
     if matlab.is_hdf5(path):
-        return read_apart(partial(hdf5.read_hdf5, group=group), path)
+        matlab_own = begin.startswith(_MATLAB_MAGIC) or path.suffix.lower() == ".mat"
+        read = matlab.read_matlab if matlab_own else hdf5.read_hdf5
+        return isolated(path, lambda: read(path, group), "h5py")
+    if begin.startswith(_MATLAB_MAGIC) or path.suffix.lower() == ".mat":
+        return matlab.read_matlab(path, group)
     if begin.startswith(_ZIP_MAGIC):
         raise MeasuredError(f"{path}: a packed file (xlsx, zip); expected a log: save it as CSV or unpack it first")
     return None

@@ -25,7 +25,7 @@ def load_mold(path: str | PathLike[str]) -> MoldJob:
         JobError: the file cannot be read, is not TOML, or has mistakes; the message lists all of them.
     """
     path = Path(path)
-    data, _ = read_toml(path, "a mold job", JobError)
+    data, _ = read_toml(path, "a mold job", JobError, own="part")
     return _job(data, path)
 
 

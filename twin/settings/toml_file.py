@@ -8,24 +8,43 @@ from pathlib import Path
 from typing import Any
 
 from twin.errors import SettingsError
+from twin.settings.file_kinds import kind_by_suffix, kind_by_text, other_kind
+from twin.settings.toml_hints import hint
 
 _POSITION = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
 def read_toml(
-    path: Path, what: str = "settings", refuse: type[SettingsError] = SettingsError
+    path: Path, what: str = "settings", refuse: type[SettingsError] = SettingsError, own: str | None = None
 ) -> tuple[dict[str, Any], str]:
     """A TOML file's tables and its text.
 
     Args:
         what: what the file should be, for the message.
         refuse: the error for a file that cannot be read.
+        own: a table that only this kind of file has; a file of another kind is refused with its own command.
 
     Raises:
-        SettingsError: ``refuse``: not readable, not UTF-8, or, with line and column, not TOML.
+        SettingsError: ``refuse``: not readable, not UTF-8, of another kind, or, with line and column, not TOML.
     """
-    text = read_text(path, f"{what} (TOML)", refuse)
-    return parse_toml(text, str(path), refuse), text
+    kind = kind_by_suffix(path) if path.is_file() else None
+    if kind is None:
+        text = read_text(path, f"{what} (TOML)", refuse)
+        try:
+            data = parse_toml(text, str(path), refuse)
+        except SettingsError as error:
+            kind = kind_by_text(path, text)
+            if kind is None:
+                raise
+            raise _not_this(path, kind, what, refuse) from error
+        kind = other_kind(path, data, own) if own is not None else None
+        if kind is None:
+            return data, text
+    raise _not_this(path, kind, what, refuse)
+
+
+def _not_this(path: Path, kind: str, what: str, refuse: type[SettingsError]) -> SettingsError:
+    return refuse(str(path), [f"is not {what} but {kind}"])
 
 
 def read_text(path: Path, what: str, refuse: type[SettingsError] = SettingsError) -> str:
@@ -65,4 +84,6 @@ def _syntax_error(source: str, text: str, message: str, refuse: type[SettingsErr
     end = (len(lines), len(lines[-1]) + 1)
     line, column = end if position is None or position[1] is None else map(int, position.groups())
     what = _POSITION.sub("", message)
-    return refuse(f"{source}:{line}:{column}", [f"not valid TOML: {what[:1].lower()}{what[1:]}"])
+    written = hint(lines[line - 1]) if line <= len(lines) else None
+    more = f"; {written}" if written is not None else ""
+    return refuse(f"{source}:{line}:{column}", [f"not valid TOML: {what[:1].lower()}{what[1:]}{more}"])

@@ -100,7 +100,14 @@ def describe(tool: Tool) -> str:
 
 def _coefficients(c: Cutting) -> CuttingCoefficients:
     return CuttingCoefficients(
-        Ktc=c.Ktc, Kte=c.Kte, Krc=c.Krc, Kre=c.Kre, Kac=c.Kac, Kae=c.Kae, source=c.source, convention=c.convention
+        Ktc=c.Ktc,
+        Kte=c.Kte,
+        Krc=c.Krc,
+        Kre=c.Kre,
+        Kac=c.Kac,
+        Kae=c.Kae,
+        source=c.source or "not stated",
+        convention=c.convention,
     )
 
 

@@ -277,3 +277,18 @@ def test_objects_next_to_forces_are_noted(tmp_path: Path) -> None:
     np.testing.assert_allclose(log.force_n, forces())
     noted = next(note for note in log.notes if note.startswith("not read: "))
     assert "T (a MATLAB table" in noted and "when (a MATLAB datetime" in noted
+
+
+@pytest.mark.parametrize("name", ["a.h5", "a.mat"])
+@pytest.mark.parametrize("size", [512, 1 << 19])
+def test_a_chunk_that_unpacks_to_more_than_it_holds(name: str, size: int, tmp_path: Path) -> None:
+    import h5py
+
+    packer = zlib.compressobj(9)
+    zeros = bytes(1 << 23)
+    packed = b"".join(packer.compress(zeros) for _ in range(40 if size > 512 else 1)) + packer.flush()
+    with h5py.File(tmp_path / name, "w") as file:
+        made = file.create_dataset("Fx", (size,), "f8", chunks=(size,), compression="gzip")
+        made.id.write_direct_chunk((0,), packed)
+    with pytest.raises(MeasuredError, match=r"data set /Fx: a chunk (of \d+ bytes|that unpacks to more than 4194304)"):
+        read_log(tmp_path / name)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import helper, njit
+from twin.jit import helper, inlined, njit
 
 #: Cones thinner than this have no part of their own: neighbours touch there, up to R times this.
 _THIN_RAD = 1e-10
@@ -39,14 +39,6 @@ class Groups(NamedTuple):
 
     members: NDArray[np.int64]
     begins: NDArray[np.int64]
-
-
-class _Polygon(NamedTuple):
-    """A convex polygon: coordinates of its corners, of which the first ``used`` are valid."""
-
-    x: FloatArray
-    y: FloatArray
-    used: int
 
 
 @njit
@@ -228,7 +220,7 @@ def vertex_cones(
             if length == 0.0:
                 continue
             ex, ey, ez = ex / length, ey / length, ez / length + _THIN_RAD
-            count = _clipped(_Polygon(px, py, count), ex, ey, ez, qx, qy)
+            count = _clipped(px, py, count, ex, ey, ez, qx, qy)
             px, qx = qx, px
             py, qy = qy, py
             if count == 0:
@@ -238,10 +230,11 @@ def vertex_cones(
             cones[v, 2], cones[v, 3] = py[:count].min(), py[:count].max()
 
 
-@helper
-def _clipped(polygon: _Polygon, ex: float, ey: float, ez: float, x: FloatArray, y: FloatArray) -> int:
+@inlined
+def _clipped(
+    px: FloatArray, py: FloatArray, count: int, ex: float, ey: float, ez: float, x: FloatArray, y: FloatArray
+) -> int:
     """The part of a convex polygon where ex x + ey y + ez <= 0; fills in its corners and returns their number."""
-    px, py, count = polygon
     kept = 0
     x0, y0 = px[count - 1], py[count - 1]
     f0 = ex * x0 + ey * y0 + ez

@@ -93,7 +93,7 @@ class Watch:
 
     def warnings(self, summary: RunSummary) -> list[str]:
         """Warnings for the user, one line each."""
-        return [*self._collided(summary), *self.doubts(summary), *self._without_effect()]
+        return [*self._collided(summary), *self.doubts(summary), *self._without_source(), *self._without_effect()]
 
     def doubts(self, summary: RunSummary) -> list[str]:
         """The warnings that are errors in a strict replay: nothing was cut, or numbers are not plausible."""
@@ -137,6 +137,13 @@ class Watch:
                 f"no material was cut: {path}, the stock is at {stock}; "
                 "check stock, machine.offsets and the tools' length_mm in the job"
             )
+
+    def _without_source(self) -> Iterator[str]:
+        parameters = self.header.parameters if self.header is not None else {}
+        tables = (key.removesuffix(".Ktc") for key in parameters if key.endswith("cutting.Ktc"))
+        for table in tables:
+            if f"{table}.source" not in parameters:
+                yield f"{table}.source is not given; state the source of the coefficients"
 
     def _without_effect(self) -> Iterator[str]:
         for text, (count, line) in list(self._notices.items())[:_MOST_NOTICES]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.edge_kernels import edge_of, v_on
 from twin.geometry.column_cells.store_kernels import FULL, PARTIAL, SIZE, START, STATE, CellStore, Grid, cell_at
-from twin.jit import helper, njit
+from twin.jit import helper, inlined, njit
 
 
 class Planes(NamedTuple):
@@ -24,13 +24,12 @@ class Planes(NamedTuple):
     pitch: float
 
 
-@helper
+@inlined
 def _odd_above(u: float, v: float, begin: int, end: int, pool: FloatArray) -> bool:
     """Whether an odd number of a cell's edges lies above a point."""
     inside = False
     for e in range(begin, end):
-        edge = edge_of(pool, e)
-        if edge.u0 <= u < edge.u1 and v_on(edge, u) > v:
+        if pool[e, 0] <= u < pool[e, 2] and v_on(edge_of(pool, e), u) > v:
             inside = not inside
     return inside
 

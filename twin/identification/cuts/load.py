@@ -33,7 +33,7 @@ def load_cuts(path: str | PathLike[str], fit: Mapping[str, Any] = NOTHING) -> Cu
         CutsError: the file cannot be read, is not TOML, or has mistakes: all of them are in the message.
     """
     path = Path(path)
-    data, _ = read_toml(path, "a file of test cuts", CutsError)
+    data, _ = read_toml(path, "a file of test cuts", CutsError, own="cuts")
     return cuts_from_dict(data, path, fit)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from twin.errors import MeasuredError
 from twin.measured.bounds import check_size
 from twin.measured.formats.arrays_in import clock_of, columns_table
+from twin.measured.formats.hdf5_chunks import check_chunks
 from twin.measured.formats.one_clock import Named
 from twin.measured.table import Table
 
@@ -38,6 +39,7 @@ def read_hdf5(path: Path, group: str | None = None) -> Table:
         if isinstance(node, h5py.Dataset):
             sizes.append(8 * int(node.size) * max(len(node.dtype.names or ()), 1))
             check_size(path, sum(sizes), "its data sets")
+            check_chunks(path, node)
             _dataset(name, node, arrays, scalars)
 
     try:

@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.measured.bounds import check_size
 from twin.measured.formats.hdf5 import attribute_text, unit_of
+from twin.measured.formats.hdf5_chunks import check_chunks
 from twin.measured.formats.matlab_values import Cell, Channel, Opaque, StructArray, Value
 
 #: Values nested deeper than this are not a log; references may form a ring.
@@ -67,6 +68,7 @@ class _Reader:
     def _array(self, node: Any, class_name: str) -> Value:
         self._bytes += 8 * int(node.size)
         check_size(self._path, self._bytes, "its variables")
+        check_chunks(self._path, node)
         if class_name == "char":
             return "".join(chr(c) for c in np.ravel(node[()]).tolist() if 0 < c < 0xD800)
         values = np.asarray(node[()], np.float64).T
@@ -96,6 +98,7 @@ class _Reader:
         self._followed += int(node.size)
         if self._followed > _MOST_REFERENCES:
             raise ValueError(f"more than {_MOST_REFERENCES} references")
+        check_chunks(self._path, node)
         found = []
         for reference in np.ravel(np.asarray(node[()])).tolist():
             value = self.value(self._file[reference], level + 1) if reference else None

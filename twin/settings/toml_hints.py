@@ -1,0 +1,48 @@
+"""Corrections of lines that are not TOML: the mistakes of first-time users."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+_KEY = r"([\w.-]+)\s*=\s*"
+_END = r"\s*,?\s*(?:#.*)?$"
+#: Patterns of a line, the first that fits counts, and what to write.
+_HINTS: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], str]], ...] = (
+    (
+        re.compile(_KEY + r"([-+]?\d+),(\d+)(?![\d.])"),
+        lambda m: f"write {m[1]} = {m[2]}.{m[3]}, with a decimal point",
+    ),
+    (
+        re.compile(_KEY + r"([-+]?\d+(?:\.\d+)?)\s*(?:mm|cm|m|um|deg|°|s|min|rpm|inch|in|%|\")" + _END),
+        lambda m: f"write {m[1]} = {m[2]}, without a unit",
+    ),
+    (re.compile(_KEY + r"(true|false|on|off|yes|no)" + _END, re.IGNORECASE), lambda m: f"write {m[1]} = {_flag(m[2])}"),
+    (re.compile(_KEY + r"[“”„‘’«»](.*?)[“”„‘’«»]"), lambda m: f'write {m[1]} = "{m[2]}", with straight quotes'),
+    (
+        re.compile(_KEY + r'"([^"]*\\[^"]*)"'),
+        lambda m: f"a backslash begins an escape; write {m[1]} = '{m[2]}' in single quotes, or / for each \\",
+    ),
+    (re.compile(_KEY + r"([^\W\d][^\"'=\[\]{}#,]*?|[.~/][^\"'=\[\]{}#,]*?)" + _END), lambda m: _quoted(m[1], m[2])),
+    (re.compile(r"^\s*([\w.-]+)\s*:\s*\S"), lambda m: f"write = after {m[1]}, not :"),
+    (re.compile(r"^\s*(?://|;|%|\()"), lambda _: "a comment begins with #"),
+    (re.compile(r"^\s*\[([\w.-]+)\s*$"), lambda m: f"write [{m[1]}]"),
+)
+
+
+def hint(line: str) -> str | None:
+    """The correction of a line; None where that is not clear."""
+    for pattern, words in _HINTS:
+        match = pattern.search(line)
+        if match:
+            return words(match)
+    return None
+
+
+def _flag(word: str) -> str:
+    return "true" if word.lower() in ("true", "on", "yes") else "false"
+
+
+def _quoted(key: str, text: str) -> str:
+    quote = "'" if "\\" in text else '"'
+    return f"write {key} = {quote}{text}{quote}, in quotes"
