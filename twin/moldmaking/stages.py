@@ -12,7 +12,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cam.passes.clear_moves import ClearOptions, part_obstacle, with_clear_moves
+from twin.cam.passes.clear_moves import ClearOptions, Obstacle, part_obstacle, with_clear_moves
 from twin.cam.passes.finishing import FinishingOptions, finishing, stepover_for_scallop
 from twin.cam.passes.raster_baseline import row_cuts, scanned
 from twin.cam.passes.roughing import RoughingOptions, Workspace, contour_roughing
@@ -104,6 +104,7 @@ class MoldPlan:
         self.space = self._workspace()
         self.read_s = time.perf_counter() - begin
         self._cutters: dict[int, DropCutter] = {}
+        self._obstacles: dict[tuple[int, float], Obstacle] = {}
 
     def _part(self) -> Solid:
         """The part; a unit that is not known is the one in which it is most like the stock, or a typical part."""
@@ -233,7 +234,7 @@ class MoldPlan:
                 best = path, spent, after
             times[method] = best[1]
         assert best is not None
-        return self._result("semi", best[0], best[2], begin, times)
+        return self._result("semi", best[0], best[2], begin, times, best[1])
 
     @cached_property
     def finish(self) -> StageResult:
@@ -287,11 +288,13 @@ class MoldPlan:
     def _cleared(self, table: StageTable, path: ToolPath, stock: Dexels) -> ToolPath:
         """A stage's path with rapids and links clear of part and stock; the stock is cut by it."""
         allowance = table.allowance_mm if isinstance(table, LevelStage) else 0.0
-        part = part_obstacle(self.surface, self.shape(table), allowance, self.cutter(table))
+        key = (table.tool, allowance)
+        if key not in self._obstacles:
+            self._obstacles[key] = part_obstacle(self.surface, self.shape(table), allowance, self.cutter(table))
         clear = ClearOptions(
             safe_z_mm=self.space.safe_z_mm, clearance_mm=self.space.clearance_mm, feed_mm_min=table.feeds.link
         )
-        return with_clear_moves(path, clear, part, stock)
+        return with_clear_moves(path, clear, self._obstacles[key], stock)
 
     def _result(
         self,
@@ -300,12 +303,13 @@ class MoldPlan:
         stock: Dexels,
         begin: float,
         by_method: Mapping[str, PathTime] = MappingProxyType({}),
+        spent: PathTime | None = None,
     ) -> StageResult:
-        """A finished stage."""
+        """A finished stage, with its machining time where that is known already."""
         return StageResult(
             stage=stage,
             path=path,
-            time=machining_time(path, self.job.machine.dynamics),
+            time=spent or machining_time(path, self.job.machine.dynamics),
             stock=stock,
             computed_s=time.perf_counter() - begin,
             by_method=by_method,

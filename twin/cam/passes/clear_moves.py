@@ -9,7 +9,7 @@ moment, with the tool enlarged by half the diagonal of the dexels' grid. A path 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import NamedTuple
@@ -124,19 +124,20 @@ def with_clear_moves(
     lines = {k: run.line for k, run in enumerate(runs) if run.kind in own}
     touching: set[int] = set()
     for kind, body in own.items():
-        numbers = [k for k in lines if runs[k].kind is kind]
-        touching |= {k for k, hit in zip(numbers, _touches([lines[k] for k in numbers], body), strict=True) if hit}
+        touching |= _which(lines, [k for k in lines if runs[k].kind is kind], body)
     in_stock = None if stock is None else stock_obstacle(stock, path.tool)
+    # the stock only shrinks: rapids that clear it now clear it at their time, and it need not be cut before them
+    rapid = [k for k in lines if runs[k].kind is MoveKind.RAPID]
+    suspects = set() if in_stock is None else _which(lines, rapid, in_stock)
     moves: list[Move] = []
     waiting: list[Move] = []
     changed = False
     for k, run in enumerate(runs):
         bodies, hit = [own.get(run.kind, part)], k in touching
-        if stock is not None and in_stock is not None and run.kind is MoveKind.RAPID:
+        if stock is not None and in_stock is not None and run.kind is MoveKind.RAPID and (hit or k in suspects):
             bodies.append(in_stock)
-            if lines[k][:, 2].min() < in_stock.top_mm:
-                _cut(stock, path.tool, waiting)
-                hit = hit or _touches([lines[k]], in_stock)[0]
+            _cut(stock, path.tool, waiting)
+            hit = hit or _touches([lines[k]], in_stock)[0]
         made = tuple(_raised(run, lines[k], bodies, options)) if hit else run.moves
         changed |= hit
         moves += made
@@ -146,10 +147,15 @@ def with_clear_moves(
     return replace_moves(path, tuple(moves)) if changed else path
 
 
+def _which(lines: Mapping[int, FloatArray], numbers: Sequence[int], body: Obstacle) -> set[int]:
+    """The numbers of lines that come too low somewhere."""
+    return {k for k, hit in zip(numbers, _touches([lines[k] for k in numbers], body), strict=True) if hit}
+
+
 def _cut(stock: Dexels, tool: ToolShape, waiting: list[Move]) -> None:
     """Cut the moves that are waiting, and empty their list."""
     if waiting:
-        stock.cut(tool, Strokes.of_path(ToolPath(moves=tuple(waiting), tool=tool)))
+        stock.cut(tool, Strokes.of_tip(waiting))
         waiting.clear()
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from twin.arrays import FloatArray, frozen
+from twin.cam.path.toolpath import Move as PathMove
 from twin.cam.path.toolpath import ToolPath
 from twin.motion.path import Arc, Move
 
@@ -49,7 +50,12 @@ class Strokes:
     @classmethod
     def of_path(cls, path: ToolPath, chord_mm: float = CHORD_MM) -> Strokes:
         """The motions of a tool path, rapid ones too."""
-        return cls._of((m.start_mm, m.end_mm, m.arc, partial(m.chords_mm, chord_mm)) for m in path.moves)
+        return cls.of_tip(path.moves, chord_mm)
+
+    @classmethod
+    def of_tip(cls, moves: Iterable[PathMove], chord_mm: float = CHORD_MM) -> Strokes:
+        """The motions of moves of a tool path, rapid ones too."""
+        return cls._of((m.start_mm, m.end_mm, m.arc, partial(m.chords_mm, chord_mm)) for m in moves)
 
     @classmethod
     def _of(cls, motions: Iterable[tuple[FloatArray, FloatArray, Arc | None, Callable[[], FloatArray]]]) -> Strokes:
