@@ -22,6 +22,8 @@ class Tolerance:
             of a section leave at its kinks.
         clearance_mm: how deep a shank, a holder, or a cutting part that must not cut may be in the material without a
             collision, so that a tool may go along a surface that it made, whatever the chords of that surface.
+        join_mm: how far the ends of short feed motions may be off the line that replaces them; less than the clearance,
+            and more than the rounding of coordinates to 0.001 mm at usual pitches.
     """
 
     chord_mm: float
@@ -30,6 +32,7 @@ class Tolerance:
     chip: float = 1e-12
     contact_mm3: float
     clearance_mm: float
+    join_mm: float
 
     @classmethod
     def for_pitch(cls, pitch_mm: float) -> Tolerance:
@@ -38,5 +41,6 @@ class Tolerance:
             chord_mm=0.005 * pitch_mm,
             depth_mm=1e-6 * pitch_mm,
             contact_mm3=0.1 * pitch_mm**3,
+            join_mm=0.02 * min(pitch_mm, 0.1),
             clearance_mm=max(min(_CLEARANCE_MM, 0.1 * pitch_mm), 0.009 * pitch_mm),
         )

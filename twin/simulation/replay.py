@@ -8,6 +8,7 @@ with Replay(load_job("job.toml")) as replay:
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Iterator
 from itertools import islice, pairwise
 from types import TracebackType
@@ -15,6 +16,7 @@ from typing import Self
 
 import numpy as np
 
+from gcode.events import Event
 from twin.arrays import FloatArray
 from twin.cutting.engagement import Positions
 from twin.errors import ReplayError
@@ -26,6 +28,7 @@ from twin.simulation.clock import Turned
 from twin.simulation.contacts import Contacts, box_of, forbidden
 from twin.simulation.preview import Piece
 from twin.simulation.setup import Setup, prepare
+from twin.simulation.short_motions import Joined, joined
 from twin.simulation.solve import Solved, StepSolver, one_ahead
 from twin.simulation.tools import ToolSetup
 from twin.workpiece.to_mesh import SurfaceMesh, surface_mesh
@@ -41,14 +44,78 @@ def replayed(setup: Setup) -> Iterator[Record]:
     """The records of a job's replay, in order."""
     yield setup.header
     yield from setup.preview.whole(setup.material.workpiece)
-    for move in setup.moves:
-        if isinstance(move, Move):
-            yield from cut(move, setup)
+    for item in joined(setup.moves, setup.step_mm, setup.tolerance.join_mm):
+        if isinstance(item, Joined):
+            yield from cut_joined(item, setup)
         else:
-            yield setup.recorder.event(move)
+            yield from _one(item, setup)
     setup.material.flush()
     yield from setup.preview.changes(setup.material, setup.recorder.t_s)
     yield setup.recorder.summary(setup.material, complete=True)
+
+
+def _one(item: Move | Event, setup: Setup) -> Iterator[Record]:
+    """The records of one motion or event."""
+    if isinstance(item, Move):
+        yield from cut(item, setup)
+    else:
+        yield setup.recorder.event(item)
+
+
+def cut_joined(short: Joined, setup: Setup) -> Iterator[Record]:
+    """Replay short feed motions with one engagement, one sweep, and the force samples of each."""
+    whole, material, recorder = short.whole, setup.material, setup.recorder
+    tool = setup.tools.get(whole.tool)
+    if tool is None or not material.near(tool, whole.start_mm, whole.end_mm):
+        for item in short.items:
+            yield from _one(item, setup)
+        return
+    setup.starts.check(tool, whole, material)
+    begun_s, contacts = recorder.t_s, Contacts()
+    yield from _joined_records(short, tool, setup)
+    contacts.add(material.cut(tool, whole.start_mm, whole.end_mm, None), begun_s, whole.start_mm)
+    contacts.add(material.touches(tool, whole.start_mm, whole.end_mm), begun_s, whole.start_mm)
+    yield from setup.preview.frame(material, recorder.t_s)
+    yield from recorder.collisions(contacts.found(material.contact_mm3), whole)
+
+
+def _joined_records(short: Joined, tool: ToolSetup, setup: Setup) -> Iterator[Record]:
+    """The records of short motions and of the blocks between them."""
+    whole, recorder = short.whole, setup.recorder
+    turned, t_s = deque[Turned](), recorder.t_s
+    for item in short.items:
+        if isinstance(item, Move):
+            turned.append(recorder.clock.advance(t_s, item.duration_s, item.spindle_rpm))
+            t_s += item.duration_s
+    ends = np.array([whole.start_mm, whole.end_mm])
+    feed = (whole.end_mm - whole.start_mm) / whole.length_mm
+    pending = setup.material.pending(tool.number, whole.start_mm, feed)
+    at = _positions(whole, tool, ends, feed, pending)
+    angles = np.concatenate([angle for _, angle in turned])
+    (solved,) = setup.solver.solve(tool, at, [angles], np.array([whole.spindle_rpm]), pending)()
+    first = 0
+    for item in short.items:
+        if not isinstance(item, Move):
+            yield recorder.event(item)
+            continue
+        samples = turned.popleft()
+        last = first + len(samples[0])
+        loads = None if solved.loads is None else solved.loads[first:last]
+        own = Solved(solved.engagement, loads)
+        yield recorder.step(item, item.start_mm, item.end_mm, item.duration_s, samples, own)
+        first = last
+
+
+def _positions(move: Move, tool: ToolSetup, ends: FloatArray, feed: FloatArray, pending: SweptVolume) -> Positions:
+    """The middles of steps whose ends are given, shape (n + 1, 3)."""
+    n = len(ends) - 1
+    return Positions(
+        0.5 * (ends[:-1] + ends[1:]),
+        np.repeat(feed[None, :], n, axis=0),
+        np.full(n, move.feed_mm_min / 60.0),
+        np.full(n, move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)),
+        np.full(n, len(pending), dtype=np.int64),
+    )
 
 
 def cut(move: Move, setup: Setup) -> Iterator[Record]:
@@ -132,13 +199,7 @@ def _begun(
         part = ends[first : first + together + 1]
         n = len(part) - 1
         turned = list(islice(turns, n))
-        at = Positions(
-            0.5 * (part[:-1] + part[1:]),
-            np.repeat(feed[None, :], n, axis=0),
-            np.full(n, move.feed_mm_min / 60.0),
-            np.full(n, move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)),
-            np.full(n, len(pending), dtype=np.int64),
-        )
+        at = _positions(move, tool, part, feed, pending)
         rpm = np.full(n, move.spindle_rpm)
         yield first, turned, solver.solve(tool, at, [angles for _, angles in turned], rpm, pending)
 
