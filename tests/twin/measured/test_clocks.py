@@ -167,3 +167,14 @@ def test_two_numbers_with_a_colon_need_a_name_that_shows_what_they_are(
     np.testing.assert_allclose(log.t_s, step_s * np.arange(14))
     with pytest.raises(MeasuredError, match=r"not read: Time \('(59|23):50' in line 2: mm:ss or hh:mm\? name it"):
         read(tmp_path, f"Time;Fx;Fy;Fz\n{rows}")
+
+
+def test_a_damaged_row_below_the_names_is_named(tmp_path: Path) -> None:
+    rows = "".join(f"{k / 10};1;2;3\n" for k in range(1, 6))
+    with pytest.raises(MeasuredError, match=r"log.txt:2: 'red' is not a number, expected 4 numbers \(field 2 of 4\)"):
+        read(tmp_path, f"t;Fx;Fy;Fz\n0;red;2;3\n{rows}")
+
+
+def test_columns_of_text_in_place_of_forces_are_named(tmp_path: Path) -> None:
+    with pytest.raises(MeasuredError, match=r"columns are none; not read: Fx \(text, 'a' in line 2\), Fy \(text, 'b'"):
+        read(tmp_path, "t;Fx;Fy\n0;a;b\n1;2;b\n")

@@ -266,3 +266,13 @@ def test_a_rate_that_is_damage_is_not_used(tmp_path: Path) -> None:
             file[f"F{axis}"] = force(from_zero())[:, i]
     with pytest.raises(MeasuredError, match="no column of time among"):
         read_forces(tmp_path / "a.h5")
+
+
+@pytest.mark.parametrize(("word", "mark"), [("Comma", ","), ("Semicolon", ";")])
+def test_other_separators_of_lvm(word: str, mark: str, tmp_path: Path) -> None:
+    lines = [*head("One"), *segment(from_zero(), "One"), *segment(from_zero(5.0), "One", stamp="10:00:05.00")]
+    lines = [line.replace("\t", mark).replace("Separator,Tab", f"Separator,{word}") for line in lines]
+    lines = [
+        line.replace("Separator;Tab", "Separator\tSemicolon").replace("X_Columns;", "X_Columns\t") for line in lines
+    ]
+    as_expected(read(tmp_path, lines), from_zero(), from_zero(5.0))

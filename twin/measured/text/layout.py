@@ -58,6 +58,10 @@ class Layout:
         found = [_fits(f, kind, self.marks) for f, kind in zip(fields, self.kinds, strict=True)]
         return None not in found and any(found)
 
+    def fits_column(self, text: str, index: int) -> bool:
+        """Whether a field is of its column's kind, or empty."""
+        return _fits(text, self.kinds[index], self.marks) is not None
+
     def resembles(self, fields: Sequence[str]) -> bool:
         """Whether fields may be a damaged row: the first one and half of them fit."""
         if len(fields) != self.width or self.kinds[0] == "text":

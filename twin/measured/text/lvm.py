@@ -19,7 +19,7 @@ from twin.measured.text.reader import text_of
 _END = "***End_of_Header***"
 _SPECIAL = ("***Start_Special***", "***End_Special***")
 _MAGIC = "LabVIEW Measurement"
-_SEPARATORS = {"tab": "\t", "comma": ","}
+_SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";"}
 
 
 @dataclass(frozen=True, slots=True)

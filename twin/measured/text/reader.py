@@ -72,6 +72,7 @@ def parse_text(
         raise _no_rows(path, lines)
     if decimal is None and ("." in text or "," in text) and not is_settled(lines, layout):
         layout = replace(layout, marks=_weighed(path, lines, layout, first_line))
+    _check_line_above(path, lines, layout, first_line)
     header = find_header(path, lines, layout, columns, first_line)
     layout = replace(layout, kinds=tuple(map(_named_kind, layout.kinds, header.names)))
     body = Body(path, layout, header, first_line)
@@ -108,6 +109,21 @@ def _not_read(lines: Sequence[str], layout: Layout, header: Header, first_line: 
             yield f"{name} ({where}: mm:ss or hh:mm? name it '{name} [mm:ss]' by --columns)"
         elif kind == "date" and timeless:
             yield f"{name} ({where}: a date without a time)"
+
+
+def _check_line_above(path: Path, lines: Sequence[str], layout: Layout, first_line: int) -> None:
+    """Refuse a damaged row that would be taken for the names."""
+    at = next((i for i in range(layout.first - 1, -1, -1) if lines[i].strip()), None)
+    if at is None:
+        return
+    fields = fields_of(lines[at], layout.delimiter)
+    if layout.resembles(fields) and not layout.fits(fields):
+        bad = next(i for i, text in enumerate(fields) if not layout.fits_column(text, i))
+        where = f"(field {bad + 1} of {layout.width})"
+        raise MeasuredError(
+            f"{path}:{at + first_line}: {fields[bad]!r} is not a number, expected {layout.width} numbers {where}: "
+            f"{cut(lines[at])!r}"
+        )
 
 
 def _no_rows(path: Path, lines: Sequence[str]) -> MeasuredError:
