@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from mcap.opcode import Opcode
 
 from twin.archive import schemas
 from twin.archive.container.container import Container
 from twin.archive.container.partial import PartialFile
 from twin.archive.forces import to_ns
+from twin.archive.frames import DAMAGE, McapFile
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 
@@ -93,15 +95,11 @@ def read_comparison(path: str | PathLike[str]) -> tuple[ComparedForces, dict[str
     Raises:
         ArchiveError: no such file, or not the file of a comparison.
     """
-    from mcap.reader import make_reader
-
     from twin.archive.foreign import read_numbers
 
     columns = read_numbers(path, schemas.COMPARISON_TOPIC).columns
-    with Path(path).open("rb") as file:
-        found = next((a for a in make_reader(file).iter_attachments() if a.name == RESULT), None)
-    if found is None:
-        raise ArchiveError(f"{path}: holds no {RESULT}, expected a comparison's file")
+    if missing := [name for name in _NAMES if name not in columns]:
+        raise ArchiveError(f"{path}: messages without {', '.join(missing)}, expected a comparison's file")
     values = [columns[name] for name in _NAMES]
     forces = ComparedForces(
         t_s=values[0],
@@ -109,7 +107,23 @@ def read_comparison(path: str | PathLike[str]) -> tuple[ComparedForces, dict[str
         measured_n=np.column_stack(values[2:5]),
         simulated_n=np.column_stack(values[5:8]),
     )
-    return forces, json.loads(found.data)
+    return forces, _result(path)
+
+
+def _result(path: str | PathLike[str]) -> dict[str, Any]:
+    """The attached results.
+
+    Raises:
+        ArchiveError: there are none, or they are damaged.
+    """
+    with McapFile(path) as file:
+        for frame in file.frames():
+            try:
+                if frame.opcode == Opcode.ATTACHMENT and (found := file.attachment(frame)).name == RESULT:
+                    return dict(json.loads(found.data))
+            except DAMAGE as error:
+                raise file.damaged(frame.offset, f"{RESULT} cannot be read") from error
+    raise ArchiveError(f"{path}: holds no {RESULT}, expected a comparison's file")
 
 
 def _encoded(forces: ComparedForces) -> np.ndarray[tuple[int], np.dtype[np.void]]:

@@ -166,6 +166,17 @@ class McapFile:
         except ChunkError as error:
             raise self.damaged(frame.offset, str(error)) from error
 
+    def attachment(self, frame: Frame) -> Attachment:
+        """An attached file.
+
+        Raises:
+            ArchiveError: damaged.
+        """
+        if zlib.crc32(frame.body[:-4]) != int.from_bytes(frame.body[-4:], "little"):
+            raise self.damaged(frame.offset)
+        found = AttachmentRecord.read(stream(frame.body))
+        return Attachment(name=found.name, media_type=found.media_type, data=found.data)
+
     def read(self, offset: int, length: int) -> bytes:
         """Bytes of the file, fewer at its end.
 
@@ -253,17 +264,6 @@ class RunFile(McapFile):
     kind = "a run's MCAP file"
     #: Name and version of the program that wrote the file.
     library = ""
-
-    def attachment(self, frame: Frame) -> Attachment:
-        """An attached file.
-
-        Raises:
-            ArchiveError: damaged.
-        """
-        if zlib.crc32(frame.body[:-4]) != int.from_bytes(frame.body[-4:], "little"):
-            raise self.damaged(frame.offset)
-        found = AttachmentRecord.read(stream(frame.body))
-        return Attachment(name=found.name, media_type=found.media_type, data=found.data)
 
     def values(self, frame: Frame) -> tuple[str, dict[str, str]]:
         """Name and values of a metadata record.

@@ -162,6 +162,23 @@ def _runs() -> list[bytes]:
     return _written(write)
 
 
+def _comparisons() -> list[bytes]:
+    import numpy as np
+
+    from twin.archive.comparison_file import ComparedForces, write_comparison
+
+    t_s = np.arange(50) * 1e-3
+    force = np.column_stack([np.sin(200.0 * t_s), np.cos(200.0 * t_s), t_s])
+    forces = ComparedForces(t_s=t_s, spindle_angle_rad=376.0 * t_s, measured_n=force, simulated_n=0.9 * force)
+    return _written(lambda path: write_comparison(path, forces, {"lag_s": 0.1}, {"run": "a"}, "machining-twin 0.1.0"))
+
+
+def _read_comparison(path: Path) -> object:
+    from twin.archive.comparison_file import read_comparison
+
+    return read_comparison(path)
+
+
 def _inside_mutated(source: random.Random, data: bytes) -> bytes:
     from support.fuzz.mcap_inside import inside_mutated
 
@@ -235,6 +252,7 @@ TARGETS: dict[str, Target] = {
     "mold job": Target(suffix=".toml", seeds=_molds, once=_TOML, use=_load_mold, neighbours=_job_neighbours),
     "STL": Target(suffix=".stl", seeds=_boxes, once=_mutated_stl, use=_load_mesh),
     "run": Target(suffix=".mcap", seeds=_runs, once=_inside_mutated, use=_read_run),
+    "comparison": Target(suffix=".mcap", seeds=_comparisons, once=_inside_mutated, use=_read_comparison),
     "log, CSV": _log_target("csv", ".csv", _TABLE),
     "log, DynoWare": _log_target("dynoware", ".txt", _TABLE),
     "log, LVM": _log_target("lvm", ".lvm", _TABLE),
