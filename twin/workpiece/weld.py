@@ -9,16 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from twin.arrays import FloatArray
 from twin.geometry.mesh.slicing import MeshEdges, mesh_edges
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 #: Vertices on open edges up to this far apart are one, mm.
 WELD_MM = 1e-3
@@ -89,7 +91,7 @@ def _joined(vertices_mm: FloatArray, mesh: Mesh) -> tuple[Mesh, int, float]:
     if len(border) == 0:
         return mesh, 0, 0.0
     points = vertices_mm[border]
-    pairs = cKDTree(points).query_pairs(WELD_MM, output_type="ndarray")
+    pairs = _tree(points).query_pairs(WELD_MM, output_type="ndarray")
     if len(pairs) == 0:
         return mesh, 0, 0.0
     graph = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(border),) * 2)
@@ -111,7 +113,7 @@ def _divided(vertices_mm: FloatArray, mesh: Mesh) -> tuple[Mesh, int, float]:
         if len(sides) == 0:
             break
         border = np.unique(mesh.edges.ends[mesh.open])
-        tree = cKDTree(vertices_mm[border])
+        tree = _tree(vertices_mm[border])
         gone: dict[int, list[list[int]]] = {}
         for triangle, side in zip(*(part.tolist() for part in np.divmod(sides, 3)), strict=True):
             if triangle in gone:
@@ -141,6 +143,12 @@ def _on_edge(
     inner = (off <= WELD_MM) & (at > WELD_MM) & (at < length - WELD_MM)
     order = np.argsort(at[inner], kind="stable")
     return near[inner][order].tolist(), float(off[inner].max(initial=0.0))
+
+
+def _tree(points_mm: FloatArray) -> cKDTree:
+    from scipy.spatial import cKDTree  # only for meshes that are open: it takes longer to import than to use
+
+    return cKDTree(points_mm)
 
 
 def _replaced(mesh: Mesh, gone: dict[int, list[list[int]]]) -> Mesh:
