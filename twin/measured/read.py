@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from twin.errors import MeasuredError
-from twin.measured.isolated import isolated
+from twin.measured.formats.isolated import isolated
 from twin.measured.log import RawLog
 from twin.measured.settings import AS_IN_FILE, LogReading
 from twin.measured.table import Table

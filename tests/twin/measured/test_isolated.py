@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from twin.errors import MeasuredError
-from twin.measured import isolated as door
-from twin.measured.isolated import isolated
+from twin.measured.formats import isolated as door
+from twin.measured.formats.isolated import isolated
 from twin.measured.table import Table, table
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="readers have their own process on Linux only")

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from twin.errors import MeasuredError
-from twin.measured.bounds import check_size
 from twin.measured.formats.arrays_in import clock_of, columns_table
+from twin.measured.formats.bounds import check_size
 from twin.measured.formats.hdf5_chunks import check_chunks
 from twin.measured.formats.one_clock import Named
 from twin.measured.table import Table

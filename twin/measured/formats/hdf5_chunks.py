@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from twin.errors import MeasuredError
-from twin.measured.bounds import most_bytes
+from twin.measured.formats.bounds import most_bytes
 
 _DEFLATE = 1
 #: Most bytes that one byte of deflated data makes.

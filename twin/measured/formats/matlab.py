@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from twin.errors import MeasuredError
-from twin.measured.bounds import most_bytes
 from twin.measured.formats.arrays_in import columns_table
+from twin.measured.formats.bounds import most_bytes
 from twin.measured.formats.matlab_values import Columns
 from twin.measured.table import Table
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.measured.bounds import check_size
+from twin.measured.formats.bounds import check_size
 from twin.measured.formats.hdf5 import attribute_text, unit_of
 from twin.measured.formats.hdf5_chunks import check_chunks
 from twin.measured.formats.matlab_values import Cell, Channel, Opaque, StructArray, Value

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import MeasuredError
-from twin.measured.bounds import check_size
+from twin.measured.formats.bounds import check_size
 from twin.measured.table import Table, table
 
 

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import MeasuredError
-from twin.measured.bounds import most_bytes
+from twin.measured.formats.bounds import most_bytes
 from twin.measured.table import Table
 
 #: Time for a file, s: this, and one second more for this many bytes.
