@@ -161,4 +161,8 @@ def test_what_is_read_of_a_run_that_ends_early_is_stated(
     path = tmp_path / "run.mcap"
     path.write_bytes(data[: len(data) // 2])
     assert run(["export", str(path), str(tmp_path / "f.csv")]) == 0
-    assert capsys.readouterr().err == f"warning: {path}: ends early; what it has up to there is used\n"
+    warning = f"warning: {path}: ends early; what it has up to there is used\n"
+    assert capsys.readouterr().err == warning
+    (log := tmp_path / "log.csv").write_text("Fx,Fy\n")
+    assert run(["compare", str(path), str(log)]) == 1
+    assert capsys.readouterr().err.startswith(warning)

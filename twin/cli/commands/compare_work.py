@@ -39,6 +39,7 @@ def run_one(run: Path, measured: Path | None, options: Mapping[str, Any], output
         TwinError: a mistake that the user can correct.
     """
     from twin.cli.console import print_json, results, warn
+    from twin.cli.early_end import warn_of_early_end
 
     if outputs.view:
         from twin.sinks.rerun.viewer import require_viewer
@@ -49,6 +50,7 @@ def run_one(run: Path, measured: Path | None, options: Mapping[str, Any], output
     log = measured or job_log
     if log is None:
         raise CompareError(f"{run}: no log given, and its job has no measured.file; expected RUN.mcap MEASURED")
+    warn_of_early_end(run)
     found = compare_files(run, log, settings)
     for warning in found.warnings:
         warn(warning)
