@@ -178,3 +178,13 @@ def test_a_damaged_row_below_the_names_is_named(tmp_path: Path) -> None:
 def test_columns_of_text_in_place_of_forces_are_named(tmp_path: Path) -> None:
     with pytest.raises(MeasuredError, match=r"columns are none; not read: Fx \(text, 'a' in line 2\), Fy \(text, 'b'"):
         read(tmp_path, "t;Fx;Fy\n0;a;b\n1;2;b\n")
+
+
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_last_columns_that_are_empty_throughout(mark: str, tmp_path: Path) -> None:
+    rows = "".join(f"{k / 1000:.3f};{k};1;2;OK;;\n" for k in range(8))
+    text = f"t_s;Fx;Fy;Fz;Status;Operator;Program\n{rows}"
+    log = read(tmp_path, text.replace(";", mark))
+    np.testing.assert_allclose(log.force_n[:, 0], np.arange(8))
+    with pytest.raises(MeasuredError, match="5 columns of numbers below a header of 7 names"):
+        read(tmp_path, text.replace(";;", "").replace(";", mark))

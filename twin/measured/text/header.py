@@ -60,6 +60,9 @@ def find_header(
     last = rows[-1] if rows else []
     if len(last) == layout.width + 1 and _REMARK.match(last[-1]):
         last = last[:-1]
+    elif len(last) > layout.width and layout.first < len(lines):
+        written = len(fields_of(f"{lines[layout.first]}.", layout.delimiter)) if layout.delimiter else 0
+        last = last[: layout.width] if written == len(last) else last  # the last columns are empty throughout
     names = last if _is_names(last, layout) else None
     seen = tuple(tuple(row) for row in (names, units) if row)
     spare = tuple(units) if units else ("",) * layout.width
