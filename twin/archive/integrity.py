@@ -15,7 +15,7 @@ from twin.archive.container.unpack import MOST_RATIO
 from twin.archive.frames import DAMAGE, FOOTER_BYTES, HEAD, Frame, Head, McapFile, stream
 
 #: A file whose chunks have more than this together, unpacked, must not have more than `MOST_RATIO` times its own size.
-FREE_TOTAL_BYTES = 1 << 28
+FREE_TOTAL_BYTES = 1 << 26
 #: Bytes of the footer that the checksum of the summary section covers: all but the checksum itself.
 _FOOTER_CHECKED = HEAD.size + 16
 _PIECE = 1 << 20
