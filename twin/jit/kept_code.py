@@ -33,7 +33,7 @@ class CompiledCodeOnly(_DISPATCHER):  # type: ignore[misc]
     """A compiled function without code for calls from Python, which would end the process without a message."""
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """What numba calls for arguments of these types: the same for all values of a whole number.
+        """The code that numba calls for arguments of these types: the same for all values of a whole number.
 
         Numba would compile the function again for each whole number that a caller passes, and for a 0 that a loop
         counts up from, without ever calling the result. For False and True it is compiled twice, which pays.

@@ -57,7 +57,7 @@ def joined(items: Iterable[Move | Event], step_mm: float, off_mm: float) -> Iter
 
 
 def _released(held: list[Move | Event], moves: list[Move]) -> Iterator[Move | Event | Joined]:
-    """What is held: several motions as one, the blocks after them on their own."""
+    """The items that are held: several motions as one, the blocks after them on their own."""
     if len(moves) < 2:
         yield from held
         return
