@@ -206,7 +206,7 @@ class Tool(Table):
         default=0.0,
         description="direction of the runout, measured from the tip of the first tooth in the direction of rotation",
     )
-    shank: Annotated[RigidPart | None, Key(unset="none")] = Field(
+    shank: Annotated[RigidPart | None, Key(unset="without a holder, the largest diameter goes on")] = Field(
         default=None, description="shank above the flutes: { diameter_mm, length_mm }"
     )
     holder: Annotated[tuple[RigidPart, ...], Strict(False), Key(unset="none")] = Field(

@@ -14,6 +14,7 @@ from twin.record import Collision
 from twin.simulation.contacts import Contacts, box_of, collision_record, forbidden
 from twin.simulation.material import Material
 from twin.simulation.setup import prepare
+from twin.simulation.short_motions import Joined, joined
 from twin.simulation.tools import ToolSetup
 from twin.workpiece.trislice import TriSlices
 
@@ -42,7 +43,8 @@ def machined(
     with closing(prepare(job, threads=threads, preview=False)) as setup:
         begin(setup.header.planned_time_s)
         collisions, t_s = list[Collision](), 0.0
-        for item in setup.moves:
+        for any_item in joined(setup.moves, setup.step_mm, setup.tolerance.join_mm):
+            item = any_item.whole if isinstance(any_item, Joined) else any_item
             if isinstance(item, ToolChange):
                 t_s += job.machine.tool_change_s
             if not isinstance(item, Move):
