@@ -123,6 +123,7 @@ def _openings(vertices_mm: FloatArray, mesh: Mesh) -> Iterator[str]:
         else:
             kind = "T-vertex seam" if gap <= WELD_MM else "crack" if gap <= _SLENDER * length else "hole"
         kinds.setdefault(kind, []).append((gap, length, own))
+    part = f" among the first {_MOST_OPENINGS} of {total} openings" if total > _MOST_OPENINGS else ""
     for kind, found in kinds.items():
         gap, length, own = max(found, key=lambda one: one[0])
         size = f"{gap:.4g} mm wide"
@@ -130,7 +131,7 @@ def _openings(vertices_mm: FloatArray, mesh: Mesh) -> Iterator[str]:
             size = f"{gap:.2g} mm wide and {length:.4g} mm long"
         which_one = "" if len(found) == 1 else "the widest "
         edges = count(sum(len(one) for _, _, one in found), "open edge")
-        yield f"{count(len(found), kind)} of {edges}, {which_one}{size}: {positions(vertices_mm, own)}"
+        yield f"{count(len(found), kind)} of {edges}{part}, {which_one}{size}: {positions(vertices_mm, own)}"
 
 
 def _size(ends_mm: FloatArray) -> tuple[float, float]:
