@@ -47,9 +47,8 @@ def points(moves: list[Move], step: float = STEP) -> FloatArray:
 
 
 def deepest_mm(path: ToolPath, surface: Surface, allowance: float, kind: MoveKind) -> float:
-    """How far a rapid or link comes below the exact height of the tip, straight rises of rapids left out."""
-    moves = [m for m in path.of_kind(kind) if kind is MoveKind.LINK or not rises(m)]
-    at = points(moves)
+    """How far a rapid or link comes below the exact height of the tip."""
+    at = points(list(path.of_kind(kind)))
     if not len(at):
         return -math.inf
     return float((allowed_heights(surface, path.tool, at[:, :2], allowance) - at[:, 2]).max())
@@ -159,3 +158,14 @@ def test_a_rapid_down_next_to_a_wall_of_the_stock_ends_above_it() -> None:
     assert down.rapid and plunge.kind is MoveKind.PLUNGE and plunge.feed_mm_min == 1000.0
     assert down.end_mm[2] == plunge.start_mm[2] > 3.0
     assert np.all(plunge.end_mm == (6.0, 0.03, 1.0))
+
+
+def test_a_rise_from_below_the_allowance_begins_at_feed() -> None:
+    """A cut that is 3 um too close to a wall of 6 mm."""
+    cut = Move(kind=MoveKind.CUT, points_mm=np.array([[-2.247, -5.0, 1.0], [-2.247, 0.0, 1.0]]), feed_mm_min=600.0)
+    path = ToolPath(moves=(cut, *rapids(np.array([cut.end_mm, (-2.247, 0.0, 15.0)]))), tool=TOOL)
+    part = part_obstacle(PIN, TOOL, 0.2)
+    first, retract, rise = with_clear_moves(path, OPTIONS, part).moves
+    assert first is cut and (retract.kind, retract.feed_mm_min) == (MoveKind.RETRACT, 1000.0)
+    assert rise.rapid and rise.end_mm[2] == 15.0 and 3.5 < rise.start_mm[2] < 6.2
+    assert deepest_mm(with_clear_moves(path, OPTIONS, part), PIN, 0.2, MoveKind.RAPID) <= ROUNDING

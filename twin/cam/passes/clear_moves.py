@@ -129,6 +129,7 @@ def with_clear_moves(
     # the stock only shrinks: rapids that clear it now clear it at their time, and it need not be cut before them
     rapid = [k for k in lines if runs[k].kind is MoveKind.RAPID]
     suspects = set() if in_stock is None else _which(lines, rapid, in_stock)
+    low = _low_starts(runs, rapid, own[MoveKind.LINK])
     moves: list[Move] = []
     waiting: list[Move] = []
     changed = False
@@ -139,12 +140,42 @@ def with_clear_moves(
             _cut(stock, path.tool, waiting)
             hit = hit or _touches([lines[k]], in_stock)[0]
         made = tuple(_raised(run, lines[k], bodies, options)) if hit else run.moves
-        changed |= hit
+        if k in low:
+            made = (*_slow_rise(made[0], low[k], options), *made[1:])
+        changed |= hit or k in low
         moves += made
         waiting += made
     if stock is not None:
         _cut(stock, path.tool, waiting)
     return replace_moves(path, tuple(moves)) if changed else path
+
+
+def _low_starts(runs: Sequence[_Run], numbers: Sequence[int], part: Obstacle) -> dict[int, float]:
+    """Runs of rapids that rise from below the lowest tip, as cuts may lie in the allowance by their tolerance.
+
+    Returns:
+        Lowest tips by the number of the run.
+    """
+    rising = [k for k in numbers if _rises(runs[k].moves[0])]
+    if not rising:
+        return {}
+    starts = np.array([runs[k].moves[0].start_mm for k in rising])
+    lowest = part.exact(starts[:, :2])
+    below = starts[:, 2] < lowest - _ROUNDING_MM
+    return {k: float(z) for k, z, low in zip(rising, lowest, below, strict=True) if low}
+
+
+def _rises(move: Move) -> bool:
+    return bool(np.all(move.start_mm[:2] == move.end_mm[:2]) and move.end_mm[2] > move.start_mm[2])
+
+
+def _slow_rise(rise: Move, lowest_mm: float, options: ClearOptions) -> Iterator[Move]:
+    """A rise at feed to the lowest tip, and from there at the rapid rate."""
+    middle = rise.start_mm.copy()
+    middle[2] = min(lowest_mm, rise.end_mm[2])
+    line = np.array([rise.start_mm, middle])
+    yield Move(kind=MoveKind.RETRACT, points_mm=line, feed_mm_min=options.feed_mm_min)
+    yield from rapids(np.array([middle, rise.end_mm]))
 
 
 def _which(lines: Mapping[int, FloatArray], numbers: Sequence[int], body: Obstacle) -> set[int]:
