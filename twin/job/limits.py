@@ -12,6 +12,8 @@ from twin.workpiece.slice_limit import least_pitch_mm
 
 #: Finest angle between force samples, deg.
 _LEAST_ANGLE_DEG = 0.01
+#: Slowest rapids, mm/min.
+_LEAST_RAPID_MM_MIN = 0.001
 #: Finest step of the tool, in slice pitches.
 _LEAST_STEP_PITCHES = 0.01
 #: Most cells of the workpiece as drawn along its longest side.
@@ -82,4 +84,14 @@ def edges_fit(facts: Facts, _folder: Path) -> Iterator[Problem]:
         yield wrong(("simulation", "axial_step_mm"), axial, expected)
 
 
-LIMITS = (slices_fit, drawing_fits, steps_countable, edges_fit)
+def rapids_end(facts: Facts, _folder: Path) -> Iterator[Problem]:
+    """Rapids come to an end."""
+    rate = facts.get("machine", "rapid_mm_min")
+    if rate is not None and rate < _LEAST_RAPID_MM_MIN:
+        yield wrong(("machine", "rapid_mm_min"), rate, f"at least {_LEAST_RAPID_MM_MIN:g}")
+    for index, rate in enumerate(facts.get("machine", "axis_rapid_mm_min") or ()):
+        if rate < _LEAST_RAPID_MM_MIN:
+            yield wrong(("machine", "axis_rapid_mm_min", index), rate, f"at least {_LEAST_RAPID_MM_MIN:g}")
+
+
+LIMITS = (rapids_end, slices_fit, drawing_fits, steps_countable, edges_fit)

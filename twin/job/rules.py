@@ -63,13 +63,10 @@ def stock_offset_known(facts: Facts, _folder: Path) -> Iterator[Problem]:
 
 
 def axis_rapids_sound(facts: Facts, _folder: Path) -> Iterator[Problem]:
-    """Rates of single axes are above 0, and given only where the axes move independently."""
+    """Rates of single axes are given only where the axes move independently."""
     rates = facts.get("machine", "axis_rapid_mm_min")
     if rates is None:
         return
-    for index, rate in enumerate(rates):
-        if not rate > 0.0:
-            yield wrong(("machine", "axis_rapid_mm_min", index), rate, "a number above 0")
     path = facts.get("machine", "rapid") or RAPIDS.get(facts.get("program", "dialect") or "")
     if path == "straight":
         yield wrong(("machine", "axis_rapid_mm_min"), rates, 'it only with machine.rapid = "independent"')

@@ -22,6 +22,15 @@ from twin.simulation.replay import Replay
             {"tools__0__flute_length_mm": 1e18},
             "flute_length_mm (tool 1) = 1e+18: expected a number above 0 and at most",
         ),
+        ({"machine__rapid_mm_min": 1e-308}, "machine.rapid_mm_min = 1e-308: expected at least 0.001"),
+        (
+            {"machine__axis_rapid_mm_min": [1e4, 0, 1e4]},
+            "machine.axis_rapid_mm_min[1] = 0: expected at least 0.001",
+        ),
+        (
+            {"program__dialect": "grbl", "machine__axis_rapid_mm_min": [1e4, 1e4, 1e4]},
+            'expected it only with machine.rapid = "independent"',
+        ),
         ({"simulation__axial_step_mm": 1e-7}, "simulation.axial_step_mm = 1e-07: expected at least 0.0014, finer edge"),
         ({"simulation__step_mm": 1e-6}, "simulation.step_mm = 1e-06: expected at least 0.005, a hundredth of"),
         ({"simulation__angle_step_deg": 1e-6}, "simulation.angle_step_deg = 1e-06: expected at least 0.01"),
