@@ -75,6 +75,8 @@ class Limits:
 
     Attributes:
         blocks: blocks executed in all.
+        repeated: blocks executed beyond the number of lines of the program and its subprograms, that is again and
+            again, by loops and repeats. Runs of plain straight motions are not counted.
         jumps: backward jumps executed in all: loops, and repeats of subprograms and macros.
         idle_jumps: backward jumps executed one after another without a motion between them.
         nesting: depth of subprogram and macro calls.
@@ -82,6 +84,7 @@ class Limits:
     """
 
     blocks: int = 20_000_000
+    repeated: int = 500_000
     jumps: int = 1_000_000
     idle_jumps: int = 100_000
     nesting: int = 64

@@ -100,8 +100,8 @@ ERRORS: Mapping[str, str] = {
     "reference-missed": "G27 does not end at the reference point",
     "repeated-word": "a letter used twice in a block",
     "return-place": "M99 in an O-word subroutine",
-    "runaway": "more blocks executed than `limits.blocks`, more backward jumps or repeats than `limits.jumps`, or more "
-    "of them than `limits.idle_jumps` without a motion",
+    "runaway": "more blocks executed than `limits.blocks`, more backward jumps or repeats than `limits.jumps`, more of "
+    "them than `limits.idle_jumps` without a motion, or more blocks executed again and again than `limits.repeated`",
     "scaling-two": "G51 with P together with I, J, K",
     "settings-key": "an unknown key of a settings file",
     "settings-syntax": "a settings file that is not TOML",

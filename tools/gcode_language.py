@@ -242,6 +242,7 @@ def limits() -> str:
     given = Limits()
     rows = (
         ("blocks executed", f"{given.blocks:,}", "setting `limits.blocks`"),
+        ("blocks executed again and again", f"{given.repeated:,}", "setting `limits.repeated`"),
         ("jumps back (loops)", f"{given.jumps:,}", "setting `limits.jumps`"),
         ("jumps back without a motion between them", f"{given.idle_jumps:,}", "setting `limits.idle_jumps`"),
         ("turns of one arc", f"{arcs.MOST_TURNS:,}", "LinuxCNC"),

@@ -61,6 +61,7 @@ class Level:
         modal: it was called by G66, so motions in it call nothing.
         saved: modes that M70 or M73 saved, None for none.
         fresh: nothing of it has been run yet.
+        placed: its parsed lines with its calls in their places, by offset; some of them, for lines that are repeated.
     """
 
     program: Program
@@ -78,6 +79,7 @@ class Level:
     modal: bool = False
     saved: SavedModes | None = None
     fresh: bool = True
+    placed: dict[int, tuple[ParsedBlock, ...]] = field(default_factory=dict)
 
     def jump(self, spot: Spot) -> None:
         """Continues at the line at `spot`, out of all loops that do not hold it."""

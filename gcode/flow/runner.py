@@ -30,6 +30,10 @@ from gcode.phases.cutter_compensation import flushed
 from gcode.phases.g10 import skipped_data
 from gcode.settings import MachineSettings
 
+#: Lines of a called program that are kept with their places.
+_PLACED_LINES = 1000
+#: Events that count as those of one block; canned cycles with many holes make more.
+_EVENTS_OF_A_BLOCK = 4
 #: Parsed lines that are kept, for programs that jump and call.
 _KEPT_LINES = 50_000
 
@@ -109,11 +113,12 @@ class Runner:
         blocks, level_next = known
         line = level.spot.line
         session.count_blocks(line)
+        session.count_singly(line)
         level.spot = Spot(level_next, line + 1)
         if not blocks:
             return ParsedBlock(place=Place(file=level.program.file, line=line, calls=level.calls))
         if level.calls:
-            blocks = tuple(replace(block, place=replace(block.place, calls=level.calls)) for block in blocks)
+            blocks = _placed(level, offset, blocks)
         level.queue.extend(blocks[1:])
         session.place = blocks[0].place
         return blocks[0]
@@ -188,6 +193,8 @@ class Runner:
         session = self.session
         before, moved = session.state, False
         session.state, events = step(session.state, block, first_of_program=first_of_program)
+        if len(events) > _EVENTS_OF_A_BLOCK:
+            session.count_singly(block.place.line, len(events) // _EVENTS_OF_A_BLOCK)
         for event in events:
             if isinstance(event, CallRequest):
                 yield from subprograms.call(session, block, event)
@@ -242,6 +249,16 @@ class Runner:
             calls=level.calls,
             extra=state.extra,
         )
+
+
+def _placed(level: Level, offset: int, blocks: tuple[ParsedBlock, ...]) -> tuple[ParsedBlock, ...]:
+    """The blocks of a line with the calls that led to it in their places."""
+    found = level.placed.get(offset)
+    if found is None:
+        found = tuple(replace(block, place=replace(block.place, calls=level.calls)) for block in blocks)
+        if len(level.placed) < _PLACED_LINES:
+            level.placed[offset] = found
+    return found
 
 
 def _last_place(level: Level, run: PlainRun) -> Place:

@@ -52,7 +52,8 @@ class Session:
         line_offset: byte offset of that line.
         blocks: blocks executed so far.
         jumps: jumps back made so far.
-        jumps_at_motion: the same when the program last moved.
+        singly: those of them that were executed one by one, and holes of canned cycles.
+        jumps_at_motion: the jumps when the program last moved.
         assumed: control variables whose value was assumed to be 0, each reported once.
     """
 
@@ -80,6 +81,8 @@ class Session:
         self.blocks = 0
         self.jumps = 0
         self.jumps_at_motion = 0
+        self.singly = 0
+        self._singly_allowed = settings.limits.repeated
         self.assumed: set[int] = set()
 
     @property
@@ -163,6 +166,21 @@ class Session:
         self.blocks += blocks
         if self.blocks > self.settings.limits.blocks:
             self._run_away(line, f"more than {self.settings.limits.blocks} blocks were executed")
+
+    def count_singly(self, line: int, blocks: int = 1) -> None:
+        """Counts blocks that are about to be executed one by one.
+
+        Raises:
+            GcodeError: beyond `Limits.repeated` and the number of lines there are.
+        """
+        self.singly += blocks
+        if self.singly <= self._singly_allowed:
+            return
+        programs = {id(level.program): level.program for level in self.levels}
+        most = self.settings.limits.repeated
+        self._singly_allowed = most + sum(program.text.count(b"\n") + 1 for program in programs.values())
+        if self.singly > self._singly_allowed:
+            self._run_away(line, f"more than {most} blocks were executed again and again")
 
     def count_jump(self, place: Place) -> None:
         """Counts a jump back, so that an endless loop is found before it has run for long.
