@@ -22,7 +22,7 @@ from gcode.flow.system_variables import _CONSTANTS as CONSTANTS
 from gcode.flow.system_variables import _NAMED as NAMED
 from gcode.language import block_parser, program
 from gcode.language.expressions import MAX_DEPTH, EvaluationError, Source, parse_operand
-from gcode.phases import arcs, splines
+from gcode.phases import arcs, g10, splines
 from gcode.settings import ADDITIONAL_OFFSETS, Limits, MachineSettings, ToolOffset
 from gcode.tables.text_file import LARGEST_BYTES
 
@@ -255,6 +255,7 @@ def limits() -> str:
         ("nested brackets", str(MAX_DEPTH), ""),
         ("steps of one canned cycle block", f"{MOST_STEPS:,}", ""),
         ("additional work offsets", str(ADDITIONAL_OFFSETS), "G54.1 P"),
+        ("tool offsets that G10 makes", f"{g10.MOST_TOOL_OFFSETS:,}", ""),
         ("named parameters of one call level", f"{variables._MOST_NAMES:,}", "LinuxCNC"),
         ("arguments of a subroutine", str(owords._ARGUMENTS), "LinuxCNC"),
         ("lines of a leader before the %", str(leader.LEADER_LINES), "FANUC, Haas"),

@@ -93,7 +93,10 @@ def resolve(state: State, block: ParsedBlock) -> Command:
     repeated: tuple[Word, Word] | None = None
     for word in block.words:
         if word.letter in "GM":
-            uses.append(Use(_rule(state, block, word), word))
+            use = Use(_rule(state, block, word), word)
+            uses.append(use)
+            if use.rule.option:
+                notices.append(_option_notice(block, use))
             continue
         if word.letter in words and repeated is None:
             repeated = (words[word.letter], word)
@@ -108,7 +111,6 @@ def resolve(state: State, block: ParsedBlock) -> Command:
     _check_needs(block, uses, words)
     if dialect.senders_text and "O" in words and "O" in dialect.senders_text:
         notices.append(control_text_notice(dialect, block.place_of(words["O"]), words["O"].text))
-    notices.extend(_option_notice(block, use) for use in uses if use.rule.option)
     return Command(block, tuple(uses), words, _phases(dialect, uses, words, moves), tuple(notices))
 
 
@@ -125,9 +127,9 @@ def _option_notice(block: ParsedBlock, use: Use) -> Notice:
 
 def _rule(state: State, block: ParsedBlock, word: Word) -> CodeRule:
     """The rule of a code word; refuses what the dialect does not know or does not support."""
-    dialect, settings = state.control.dialect, state.control.settings
+    dialect = state.control.dialect
     rule = dialect.codes.get(code_name(word.letter, word.value))
-    if settings.m_codes and word.letter == "M" and word.value in settings.m_codes:
+    if word.letter == "M" and word.value in state.control.settings.m_codes:
         if rule is not None and rule.status in (Status.EXECUTED, Status.NEUTRAL):
             problem = (
                 f"{word.text} ({rule.meaning}) is a code of the {dialect.name} dialect, and m_codes has it as well"
@@ -138,7 +140,8 @@ def _rule(state: State, block: ParsedBlock, word: Word) -> CodeRule:
         problem = f"{word.text} is not a code of the {dialect.name} dialect"
         raise block.error(word, "unknown-code", problem, _declared(word) if word.letter == "M" else "")
     if rule.status is Status.REFUSED:
-        raise block.error(word, "unsupported-code", f"{word.text} ({rule.meaning}) is not supported")
+        problem = f"{word.text} ({rule.meaning}) is not supported"
+        raise block.error(word, "unsupported-code", problem, _declared(word) if word.letter == "M" else "")
     return rule
 
 
@@ -201,15 +204,14 @@ def _claim_words(
     if owner and len(uses) > 1 and not dialect.one_shot_with_motion:
         _check_axis_conflict(block, uses)
     rest = [word for letter, word in words.items() if letter not in claimed]
-    if rest and dialect.still_axes:
-        rest = _without_still_axes(dialect, block, rest, notices)
+    moves = False
     if owner is None and motion.letters:
         corners = dialect.corner_letters if motion.code in _CORNERED else ()
         left, rest = rest, [w for w in rest if w.letter not in motion.letters and w.letter not in corners]
-        _check_rest(state, block, uses, rest)
-        return len(left) > len(rest) or (explicit is not None and dialect.explicit_code_moves)
-    _check_rest(state, block, uses, rest)
-    return False
+        moves = len(left) > len(rest) or (explicit is not None and dialect.explicit_code_moves)
+    if rest:
+        _check_rest(state, block, uses, _without_still_axes(dialect, block, rest, notices))
+    return moves
 
 
 def _check_axis_conflict(block: ParsedBlock, uses: list[Use]) -> None:

@@ -112,8 +112,7 @@ class Runner:
             known = self._parse_line(level, offset, key)
         blocks, level_next = known
         line = level.spot.line
-        session.count_blocks(line)
-        session.count_singly(line)
+        session.count_block(line)
         level.spot = Spot(level_next, line + 1)
         if not blocks:
             return ParsedBlock(place=Place(file=level.program.file, line=line, calls=level.calls))

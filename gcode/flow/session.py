@@ -157,7 +157,15 @@ class Session:
         if level.saved is not None and level.saved.until_return:
             self.state = level.saved.restored_in(self.state)
 
-    def count_blocks(self, line: int, blocks: int = 1) -> None:
+    def count_block(self, line: int) -> None:
+        """Counts a block that is about to be executed by itself, as `count_blocks` and `count_singly` do."""
+        self.blocks += 1
+        self.singly += 1
+        if self.blocks > self.settings.limits.blocks or self.singly > self._singly_allowed:
+            self.count_blocks(line, 0)
+            self.count_singly(line, 0)
+
+    def count_blocks(self, line: int, blocks: int) -> None:
         """Counts blocks that are about to be executed.
 
         Raises:
@@ -167,7 +175,7 @@ class Session:
         if self.blocks > self.settings.limits.blocks:
             self._run_away(line, f"more than {self.settings.limits.blocks} blocks were executed")
 
-    def count_singly(self, line: int, blocks: int = 1) -> None:
+    def count_singly(self, line: int, blocks: int) -> None:
         """Counts blocks that are about to be executed one by one.
 
         Raises:

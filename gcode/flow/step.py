@@ -68,13 +68,12 @@ def _run_phases(state: State, command: Command) -> tuple[State, tuple[Event, ...
     if machine_move and "motion" not in command.phases:
         word = machine_move.word
         raise command.block.error(word, "missing-axis", f"{word.text} names no axis", "at least one of X, Y, Z")
-    first: tuple[Event, ...] = (Block(place=command.block.place), *command.notices)
-    events: list[Event] = []
-    if state.waiting is None:
-        events.extend(first)
-    else:
-        state, ready = through(state, None, first)
-        events.extend(ready)
+    events: list[Event] = [Block(place=command.block.place)]
+    if command.notices:
+        events.extend(command.notices)
+    if state.waiting is not None:
+        state, ready = through(state, None, tuple(events))
+        events = list(ready)
     if state.compensates:
         _check_under_compensation(state, command)
     for phase in command.phases:

@@ -240,7 +240,8 @@ def variable_number(index: Expression, scope: Scope) -> int:
 
 def _bracket(source: Source, position: int, depth: int) -> tuple[Function, int]:
     function, end = _binary(source, position + 1, 0, depth + 1)
-    _closing(source, position, end)
+    if not source.at(end, "]"):
+        _closing(source, position, end)
     return function, end + 1
 
 
@@ -250,17 +251,15 @@ def _binary(source: Source, position: int, least: int, depth: int) -> tuple[Func
     steps: list[Step] = []
     while True:
         match = _OPERATOR.match(source.text, position)
-        name = _operator_name(source.language, match[0]) if match else ""
+        name = match[0] if match else ""
+        if name in _ABBREVIATED and source.language.abbreviates:
+            name = _ABBREVIATED[name]
         rank = source.language.operators.get(name)
         if match is None or rank is None or rank[0] < least:
             return (_chained(left, tuple(steps)) if steps else left), position
         right, end = _binary(source, match.end(), rank[0] + 1, depth + 1)
         steps.append(_applied(source, position, name, right))
         position = end
-
-
-def _operator_name(language: MacroLanguage, text: str) -> str:
-    return _ABBREVIATED.get(text, text) if language.abbreviates else text
 
 
 def _chained(left: Function, steps: tuple[Step, ...]) -> Function:

@@ -10,6 +10,8 @@ from gcode.language.expressions import Expression, Source, parse_operand, parse_
 
 _OUTPUTS = ("POPEN", "PCLOS", "DPRNT", "BPRNT", "SETVN")
 _NUMBER = re.compile(r"\d+")
+#: How statements of custom macro B begin.
+_BEGINNING = re.compile(r"IF\[|GO|WH|DO|EN|PO|PC|DP|BP|SE")
 _O_KEYWORD = re.compile("|".join(sorted((k.value.upper() for k in OKeyword), key=len, reverse=True)))
 _O_NUMBER = re.compile(r"\d+")
 #: Keywords that take no bracketed expression, and those that take as many as come.
@@ -38,6 +40,8 @@ def parse_statement(source: Source, position: int, then: Then) -> tuple[Statemen
 
 
 def _fanuc(source: Source, position: int, then: Then) -> tuple[Statement, int] | None:
+    if not _BEGINNING.match(source.text, position):
+        return None
     column = source.column(position)
     if source.at(position, "IF["):
         return _if(source, position, then)

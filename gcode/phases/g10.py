@@ -17,6 +17,8 @@ from gcode.settings import NUMBERED_OFFSETS, ToolOffset
 
 #: Kind of data (`Dialect.data_kinds`) that lasts from G10 L until G11, block after block, and is not executed.
 _UNTIL_G11 = "ignored"
+#: Tool offsets that a program may make by G10; controls have a few hundred.
+MOST_TOOL_OFFSETS = 2000
 #: Orientations of lathe tools are numbered from 1 to this.
 LAST_ORIENTATION = 9
 
@@ -151,7 +153,7 @@ def _set_tool_field(field: str, letter: str = "R") -> Action:
         row = state.setup.tools.get(number, ToolOffset())
         length = word.value * state.modes.unit_mm
         value = length if state.modes.absolute else getattr(row, field) + length
-        return _with_tool(state, number, row.with_column(field, value)), ()
+        return _with_tool(state, command, number, row.with_column(field, value)), ()
 
     return action
 
@@ -172,7 +174,7 @@ def _row_from_position(state: State, command: Command, frame: CoordinateFrame) -
     gauge = state.gauge_mm
     believed = frame.to_program(difference(gauge, (row.x_mm, row.y_mm, row.length_mm)))
     place = difference(gauge, frame.to_machine(axis_words(state, command, believed)))
-    return _with_tool(state, number, _with_offsets(state, command, row, place)), ()
+    return _with_tool(state, command, number, _with_offsets(state, command, row, place)), ()
 
 
 def _set_tool_row(state: State, command: Command) -> Result:
@@ -182,7 +184,7 @@ def _set_tool_row(state: State, command: Command) -> Result:
         use = command.of_phase("data")[0].word
         raise command.block.error(use, "missing-word", f"{use.text} sets nothing", "axis words, R, I, J or Q")
     place = axis_words(state, command, (row.x_mm, row.y_mm, row.length_mm))
-    return _with_tool(state, number, _with_offsets(state, command, row, place)), ()
+    return _with_tool(state, command, number, _with_offsets(state, command, row, place)), ()
 
 
 def _known_row(state: State, command: Command) -> tuple[int, ToolOffset]:
@@ -205,7 +207,10 @@ def _with_offsets(state: State, command: Command, row: ToolOffset, place: Point)
     return replace(row, x_mm=place[0], y_mm=place[1], length_mm=place[2], radius_mm=radius, orientation=orientation)
 
 
-def _with_tool(state: State, number: int, row: ToolOffset) -> State:
+def _with_tool(state: State, command: Command, number: int, row: ToolOffset) -> State:
+    if number not in state.setup.tools and len(state.setup.tools) >= MOST_TOOL_OFFSETS:
+        problem = f"{command.words['P'].text} is one tool offset too many"
+        raise command.block.error(command.words["P"], "bad-value", problem, f"at most {MOST_TOOL_OFFSETS} of them")
     return state.with_setup(tools=MappingProxyType({**state.setup.tools, number: row}))
 
 

@@ -153,3 +153,20 @@ def test_repeats_and_idle_loops_run_into_a_limit(text: str, dialect: str) -> Non
 def test_a_loop_that_moves_is_not_idle() -> None:
     settings = MachineSettings(limits=Limits(idle_jumps=5))
     assert check("#1=0\nWHILE[#1LT50]DO1\nG91 G0 X1\n#1=#1+1\nEND1\nM30", settings=settings) == []
+
+
+def test_blocks_run_again_and_again_have_a_limit() -> None:
+    settings = MachineSettings(limits=Limits(repeated=500))
+    for text in ("M98 P2 L999\nM30\nO2\nG91 G0 X1\nM99", "#1=0\nN1 G91 G0 X1\nGOTO1\nM30"):
+        assert [error.code for error in check(text, settings=settings)] == ["runaway"]
+    holes = "G91\nWHILE[1]DO1\nG81 X1 Z-1 R0 L99 F100\nEND1\nM30"
+    assert [error.code for error in check(holes, settings=settings)] == ["runaway"]
+    assert check("".join(f"G2 X{n} Y0 R900 F100\n" for n in range(1, 900)) + "M30", settings=settings) == []
+
+
+def test_offsets_that_a_program_makes_are_bounded() -> None:
+    text = "#1=1\nWHILE[#1LT2100]DO1\nG10 L12 P#1 R1\n#1=#1+1\nEND1\nM30"
+    errors = check(text, settings=MachineSettings(limits=Limits(errors=1)))
+    assert [(error.code, error.problem) for error in errors] == [
+        ("bad-value", "P#1 is one tool offset too many"),
+    ]
