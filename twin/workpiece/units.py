@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
-import numpy as np
-
-from twin.arrays import FloatArray
 from twin.errors import MeshError
+
+if TYPE_CHECKING:
+    from twin.arrays import FloatArray
 
 Unit: TypeAlias = Literal["mm", "inch", "m", "auto"]
 
@@ -41,6 +41,8 @@ def unit_of(name: str, unit: str, corners: FloatArray, like_mm: float) -> tuple[
         raise MeshError(f"{name}: unit {unit!r}; expected one of {', '.join(get_args(Unit))}")
     if unit != "auto":
         return unit, ()
+    import numpy as np  # the unit is an option of commands, whose help needs no arrays
+
     sides = np.ptp(corners.reshape(-1, 3), axis=0)
     longest = float(sides.max()) if np.isfinite(sides).all() else 0.0
     if longest <= 0.0:
@@ -61,7 +63,7 @@ def size_doubts(
         tool_mm: diameter of the smallest tool, None where there is none.
         stock_mm: longest side of the stock, None where it does not matter.
     """
-    longest = float(np.ptp(box_mm, axis=0).max())
+    longest = float((box_mm[1] - box_mm[0]).max())
     others = ", ".join(f"{longest * f:.4g} mm if it is in {u}" for u, f in UNITS_MM.items() if u != "mm")
     advice = f"check the unit of the file (unit, --unit): {others}"
     if tool_mm is not None and longest < tool_mm:
