@@ -110,7 +110,7 @@ def test_a_body_standing_over_the_tip_is_moved_up() -> None:
     assert left.tolist() == [True, False, True]
 
 
-def test_what_a_motion_adds_beside_the_flat_bottom_of_its_start_is_cut() -> None:
+def test_the_part_that_a_motion_adds_next_to_the_flat_bottom_of_its_start_is_cut() -> None:
     body = Body.of(tool_shape("taper", 10.0, 22.0, taper_deg=15.0), chord_mm=0.002)
     sweep = Sweep(body, np.array([4.902, 9.094, 0.0]), np.array([-0.453, 0.0, 0.0]))
     one_plane = (0, -0.2, 0.4, 1, 0.002)
