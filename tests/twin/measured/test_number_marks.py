@@ -128,3 +128,43 @@ def test_a_point_in_a_file_with_decimal_commas_is_named(tmp_path: Path) -> None:
 def test_rates_above_the_columns_have_the_marks_of_the_numbers_below(stated: str, decimal: str, tmp_path: Path) -> None:
     rows = "".join(f"{k}.5;1.25;0.2\n".replace(".", decimal) for k in range(4))
     assert read(tmp_path, f"Sampling rate: {stated}\nFx;Fy;Fz\n{rows}").rate_hz == 10_000.0
+
+
+@pytest.mark.parametrize("group", ["", ".", " ", "'"])
+@pytest.mark.parametrize("decimals", [2, 3])
+def test_decimal_commas_in_quotes_between_commas(group: str, decimals: int, tmp_path: Path) -> None:
+    rows = [f'"{k},000","{grouped(1202.0 + k, group, ",", decimals)}","-280,00","0,25"\n' for k in range(4)]
+    log = read(tmp_path, '"Time [ms]","Fx [N]","Fy [N]","Fz [N]"\n' + "".join(rows))
+    np.testing.assert_allclose(log.force_n, [(1202.0 + k, -280.0, 0.25) for k in range(4)])
+    assert log.rate_hz == 1000.0
+
+
+@pytest.mark.parametrize("names", ["Time [ms]\tFx [N]\tFy [N]\tFz [N]", "Time (ms)\tFx\tFy\tFz"])
+def test_tabs_separate_where_blanks_group(names: str, tmp_path: Path) -> None:
+    rows = "".join(f"{k}\t{1 + k} 202.25\t-280.00\t80.5\n" for k in range(5))
+    log = read(tmp_path, f"{names}\n{rows}")
+    np.testing.assert_allclose(log.force_n[:, 0], [1202.25 + 1000.0 * k for k in range(5)])
+
+
+def test_groups_of_blanks_in_columns_set_apart_by_blanks_are_refused(tmp_path: Path) -> None:
+    rows = "".join(f"{k} {1 + k} 202.25 -280.00 80.5\n" for k in range(5))
+    with pytest.raises(MeasuredError, match=r"log.csv:2: 5 columns .* 4 names \(Time \(ms\), Fx, Fy, Fz\)"):
+        read(tmp_path, f"Time (ms) Fx Fy Fz\n{rows}")
+
+
+@pytest.mark.parametrize("cells", ['{k} "1 202.25" "-280" 80.5', '"{k}"  "1,202.25"  "-280"  "80.5"'])
+def test_quotes_in_columns_set_apart_by_blanks(cells: str, tmp_path: Path) -> None:
+    rows = "".join(cells.format(k=k) + "\n" for k in range(5))
+    log = read(tmp_path, f'"Time [ms]" "Fx [N]" "Fy [N]" "Fz [N]"\n{rows}')
+    np.testing.assert_allclose(log.force_n, [(1202.25, -280.0, 80.5)] * 5)
+
+
+@pytest.mark.parametrize(("rows", "message"), [
+    ("0.00{k};1.202,00;-280,00;80,00", r"Time \[s\] \('0.000' in line 2: expected a decimal comma as in other columns"),
+    ("{k}.000;1.202,00;-280,00;80,00", r"log.csv:2: '0.000' is not a number.* decimal comma as in other columns"),
+    ('"0,00{k}";1202.00;-280.00;80.00', r"Time \[s\] \('0,000' in line 2: expected a decimal point as in other columns"),
+])  # fmt: skip
+def test_two_decimal_marks_in_one_file_are_refused(rows: str, message: str, tmp_path: Path) -> None:
+    text = "".join(rows.format(k=k) + "\n" for k in range(5))
+    with pytest.raises(MeasuredError, match=message):
+        read(tmp_path, f"Time [s];Fx [N];Fy [N];Fz [N]\n{text}")

@@ -100,7 +100,7 @@ class Body:
 
     def _fast(self, lines: Sequence[str]) -> FloatArray | None:
         """All rows at once where every one is plain; None where they must be looked at one by one."""
-        if set(self.layout.kinds) - {"number", "text"}:
+        if set(self.layout.kinds) - {"number", "text"} or self.layout.delimiter == self.layout.marks.decimal:
             return None
         data = lines
         if self.layout.marks.decimal == ",":

@@ -93,7 +93,14 @@ def _fields(line: str, layout: Layout) -> list[str]:
         for wider in (re.split(r"\s{2,}|\t", bare.strip()), _WITH_UNIT.findall(bare)):
             if len(wider) == layout.width:
                 return [f.strip() for f in wider]
+    if layout.delimiter is None and 0 < sum(map(_is_bracketed, fields)) < len(fields):
+        return [f.strip() for f in _WITH_UNIT.findall(bare)]
     return fields
+
+
+def _is_bracketed(field: str) -> bool:
+    """Whether a field is a unit in brackets: it belongs to the name before it."""
+    return field[:1] in "[(" and field[-1:] in "])" and is_unit_text(field)
 
 
 def _units_row(above: Sequence[list[str]], layout: Layout) -> list[str] | None:

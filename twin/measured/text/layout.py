@@ -25,6 +25,7 @@ _TEXT_COST = 0.6
 _HEX = re.compile(r"(?:0x)?[0-9a-f]+$", re.IGNORECASE)
 _AM_PM = re.compile(r"(?<=\d)\s+(?=[AaPp]\.?[Mm]\b)")
 _WHITE = re.compile(r"[ \t\f\v]+")
+_QUOTED = re.compile(r'"([^"]*)"(?=\s|$)|(\S+)')
 
 ColumnKind: TypeAlias = Literal["number", "text"] | ClockKind
 _NUMBER: ColumnKind = "number"
@@ -93,6 +94,8 @@ class _Trial:
 def fields_of(line: str, delimiter: str | None) -> list[str]:
     """A line's fields without blanks and quotes; empty fields after the last one are dropped."""
     if delimiter is None:
+        if '"' in line:
+            return [(quoted or plain).strip() for quoted, plain in _QUOTED.findall(line)]
         if not line.isascii() or "m" in line or "M" in line:
             line = _AM_PM.sub("", line).strip()
             return _WHITE.split(line) if line else []
@@ -120,7 +123,8 @@ def find_layout(lines: Sequence[str], delimiter: str | None = None, decimal: str
     delimiters = _DELIMITERS if delimiter is None else (delimiter or None,)
     decimals = (".", ",") if decimal is None else (decimal,)
     sample = _sample(lines)
-    pairs = [(d, mark) for mark in decimals for d in delimiters if mark != d]
+    quoted = any('"' in line for line in sample)
+    pairs = [(d, mark) for mark in decimals for d in delimiters if mark != d or (quoted and mark == ",")]
     plain = [t for d, mark in pairs if (t := _try(sample, d, Marks(mark))) is not None]
     best = max(plain, key=lambda t: (t.rows, t.layout.width), default=None)
     if best is None or not best.enough:
@@ -130,10 +134,20 @@ def find_layout(lines: Sequence[str], delimiter: str | None = None, decimal: str
         best = max([*([best] if best else []), *tried, *mixed], key=lambda t: t.score, default=None)
     if best is None:
         return None
-    made = best.layout
+    made = _by_tabs(sample, best.layout, decimals) or best.layout
     marks = Marks(decimal, True) if decimal is not None else settled(_rows(sample, made), made.marks.decimal)
     made = Layout(made.delimiter, marks or made.marks, made.kinds)
     return Layout(made.delimiter, made.marks, made.kinds, _first_row(lines, made))
+
+
+def _by_tabs(lines: Sequence[str], found: Layout, decimals: Sequence[str]) -> Layout | None:
+    """The layout in which tabs separate and blanks group digits, where white space would divide the groups."""
+    if found.delimiter is not None or not any("\t" in line for line in lines):
+        return None
+    most = found.kinds.count("text")
+    tried = [t for mark in decimals for t in _try_kinds(lines, "\t", Marks(mark, True))]
+    good = [t for t in tried if t.enough and t.layout.width > 1 and t.layout.kinds.count("text") <= most]
+    return max(good, key=lambda t: t.score).layout if good else None
 
 
 def is_settled(lines: Sequence[str], layout: Layout) -> bool:

@@ -21,11 +21,11 @@ _TAIL = r"(?:{d}\d*)?(?:[eE][+-]?\d+)?$"
 #: Digits in groups of three, or in the Indian grouping; the mark between them is the group ``mark``.
 _GROUPED = {
     d: re.compile(
-        rf"[+-]?\d{{1,3}}(?P<mark>[{_BLANKS}{_APOSTROPHES}{g}])\d{{3}}(?:(?P=mark)\d{{3}})*{_TAIL.format(d=re.escape(d))}"
+        rf"[+-]?[1-9]\d{{0,2}}(?P<mark>[{_BLANKS}{_APOSTROPHES}{g}])\d{{3}}(?:(?P=mark)\d{{3}})*{_TAIL.format(d=re.escape(d))}"
     )
     for d, g in ((".", ","), (",", "."))
 }
-_INDIAN = re.compile(r"[+-]?\d{1,2}(?:,\d{2})+,\d{3}(?:\.\d*)?$")
+_INDIAN = re.compile(r"[+-]?[1-9]\d?(?:,\d{2})+,\d{3}(?:\.\d*)?$")
 #: One mark with three digits after it: 1.234 in one country, 1234 in another.
 _AMBIGUOUS = {m: re.compile(rf"[+-]?[1-9]\d{{0,2}}{re.escape(m)}\d{{3}}$") for m in ".,"}
 _ANY = {m: re.compile(rf"[+-]?\d*{re.escape(m)}\d*(?:[eE][+-]?\d+)?$") for m in ".,"}
@@ -72,6 +72,11 @@ class Marks:
         if mark in ".," and not self.group and self.decimal not in text and text.count(mark) == 1:
             return None
         return float(text.replace(mark, "").replace(",", "."))
+
+
+def foreign(text: str, marks: Marks) -> bool:
+    """Whether a field is a number only with the other decimal mark."""
+    return marks.number(text) is None and Marks(other(marks.decimal)).number(text) is not None
 
 
 class UnclearMarksError(ValueError):

@@ -15,7 +15,7 @@ from twin.measured.text.body import Body, cut
 from twin.measured.text.counts import scaled
 from twin.measured.text.header import Header, find_header, stated_rate_hz
 from twin.measured.text.layout import ColumnKind, Layout, fields_of, find_layout, is_settled, number_rows
-from twin.measured.text.marks import Marks, UnclearMarksError, settled, weighed
+from twin.measured.text.marks import Marks, UnclearMarksError, foreign, settled, weighed
 
 
 def read_text(
@@ -103,7 +103,9 @@ def _not_read(lines: Sequence[str], layout: Layout, header: Header, first_line: 
     fields = fields_of(lines[layout.first], layout.delimiter)
     for name, kind, text in zip(header.names, layout.kinds, fields, strict=False):
         where = f"{cut(text)!r} in line {layout.first + first_line}"
-        if kind == "text":
+        if kind == "text" and foreign(text, layout.marks):
+            yield f"{name} ({where}: expected a {_mark_word(layout.marks.decimal)} as in other columns)"
+        elif kind == "text":
             yield f"{name} (text, {where})"
         elif kind == "minutes" and timeless:
             yield f"{name} ({where}: mm:ss or hh:mm? name it '{name} [mm:ss]' by --columns)"
@@ -117,9 +119,13 @@ def _check_line_above(path: Path, lines: Sequence[str], layout: Layout, first_li
     if at is None:
         return
     fields = fields_of(lines[at], layout.delimiter)
-    if layout.resembles(fields) and not layout.fits(fields):
+    mixed = any(foreign(f, layout.marks) for f in fields) and all(
+        foreign(f, layout.marks) or layout.fits_column(f, i) for i, f in enumerate(fields[: layout.width])
+    )
+    if not layout.fits(fields) and (layout.resembles(fields) or (mixed and len(fields) == layout.width)):
         bad = next(i for i, text in enumerate(fields) if not layout.fits_column(text, i))
-        where = f"(field {bad + 1} of {layout.width})"
+        why = f", {_mark_word(layout.marks.decimal)} as in other columns" if foreign(fields[bad], layout.marks) else ""
+        where = f"(field {bad + 1} of {layout.width}{why})"
         raise MeasuredError(
             f"{path}:{at + first_line}: {fields[bad]!r} is not a number, expected {layout.width} numbers {where}: "
             f"{cut(lines[at])!r}"
@@ -137,7 +143,8 @@ def _weighed(path: Path, lines: Sequence[str], layout: Layout, first_line: int) 
     """The marks of numbers, from all rows."""
     rows = number_rows(lines, layout)
     try:
-        return settled(rows, layout.marks.decimal) or weighed(rows, layout.delimiter)
+        quoted = any('"' in line for line in lines)
+        return settled(rows, layout.marks.decimal) or weighed(rows, None if quoted else layout.delimiter)
     except UnclearMarksError as error:
         at = next(i for i, line in enumerate(lines) if i >= layout.first and error.text in line)
         mark = "," if "," in error.text else "."
@@ -155,5 +162,9 @@ def _named_kind(kind: ColumnKind, name: str) -> ColumnKind:
 
 def _layout_note(layout: Layout) -> str:
     names = {"\t": "tab", None: "white space"}
-    mark = "decimal comma" if layout.marks.decimal == "," else "decimal point"
+    mark = _mark_word(layout.marks.decimal)
     return f"columns separated by {names.get(layout.delimiter, repr(layout.delimiter))}, {mark}"
+
+
+def _mark_word(decimal: str) -> str:
+    return "decimal comma" if decimal == "," else "decimal point"
