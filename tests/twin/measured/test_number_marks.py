@@ -162,7 +162,7 @@ def test_quotes_in_columns_set_apart_by_blanks(cells: str, tmp_path: Path) -> No
 @pytest.mark.parametrize(("rows", "message"), [
     ("0.00{k};1.202,00;-280,00;80,00", r"Time \[s\] \('0.000' in line 2: expected a decimal comma as in other columns"),
     ("{k}.000;1.202,00;-280,00;80,00", r"log.csv:2: '0.000' is not a number.* decimal comma as in other columns"),
-    ('"0,00{k}";1202.00;-280.00;80.00', r"Time \[s\] \('0,000' in line 2: expected a decimal point as in other columns"),
+    ('"0,00{k}";1202.00;-280.00;80.00', r"Time \[s\] \('0,000' in line 2: expected a decimal point"),
 ])  # fmt: skip
 def test_two_decimal_marks_in_one_file_are_refused(rows: str, message: str, tmp_path: Path) -> None:
     text = "".join(rows.format(k=k) + "\n" for k in range(5))
