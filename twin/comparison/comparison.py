@@ -214,6 +214,11 @@ class _Both:
         source = _simulation(run, log, lag_s, settings)
         simulated = source(t_s)
         inside = (t_s >= begin) & (t_s <= end) & outside_gaps(log, log.t_s)
+        if inside.sum() < 2:
+            raise CompareError(
+                f"{log.source}: with a lag of {lag_s:.4f} s the run, {begin:.4f} to {end:.4f} s, lies in a gap of the "
+                "log; give the lag with --lag SECONDS, or --lag auto"
+            )
         return cls(
             frozen(t_s[inside], "t_s", (None,)),
             frozen(log.force_n[inside], "measured_n", (None, 3)),

@@ -102,13 +102,14 @@ def find_delay(run: RunForces, log: ForceLog, within_s: float | None = None, win
 
 @dataclass(frozen=True, slots=True)
 class _Grid:
-    """Run and log on grids of one rate."""
+    """Run and log on grids of one rate; ``valid`` is 1 for samples of the log, 0 in its gaps, None without gaps."""
 
     rate_hz: float
     run_begin_s: float
     log_begin_s: float
     run_n: FloatArray
     log_n: FloatArray
+    valid: FloatArray | None
 
     @classmethod
     def of(cls, run: RunForces, log: ForceLog) -> _Grid:
@@ -117,7 +118,14 @@ class _Grid:
         rate = log.rate_hz / thin
         measured = log.force_n if thin == 1 else signal.resample_poly(log.force_n, 1, thin, axis=0, padtype="line")
         count = int((end - begin) * rate) + 1
-        return cls(rate, begin, float(log.t_s[0]), simulated_at_rate(run, begin, count, rate), np.asarray(measured))
+        first = float(log.t_s[0])
+        valid = outside_gaps(log, first + np.arange(len(measured)) / rate).astype(float) if log.gaps else None
+        return cls(rate, begin, first, simulated_at_rate(run, begin, count, rate), np.asarray(measured), valid)
+
+    @property
+    def shorter(self) -> float:
+        """Samples of the run or of the log, whichever has fewer."""
+        return min(len(self.run_n), len(self.log_n) if self.valid is None else float(self.valid.sum()))
 
     def scores(self, axes: Sequence[int]) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Correlation at every delay, its weight, and the delays in s."""
@@ -127,8 +135,7 @@ class _Grid:
         count = totals[0][3]
         floor = 1e-9 * float(power.max())
         coefficient = np.where(power > floor, both / np.maximum(power, floor or 1.0), 0.0)
-        shorter = min(len(self.run_n), len(self.log_n))
-        weight = np.where(count >= _LEAST_OVERLAP * shorter, np.sqrt(count / shorter), 0.0)
+        weight = np.where(count >= _LEAST_OVERLAP * self.shorter, np.sqrt(count / self.shorter), 0.0)
         shifts = np.arange(-(len(self.run_n) - 1), len(self.log_n))
         coefficient = np.where(weight > 0.0, coefficient, 0.0)
         return coefficient, weight, self.log_begin_s - self.run_begin_s + shifts / self.rate_hz
@@ -142,6 +149,8 @@ class _Grid:
             centred: False leaves the means in: sums of products and squares.
         """
         m, s = self.log_n[:, log_axis], self.run_n[:, run_axis]
+        if self.valid is not None:
+            return _sums_between_gaps(m, s, self.valid, centred=centred)
         if centred:
             m, s = m - m.mean(), s - s.mean()
         shifts = np.arange(-(len(s) - 1), len(m))
@@ -154,6 +163,26 @@ class _Grid:
         var_m = _total(m * m, *in_m) - sum_m**2 / count
         var_s = _total(s * s, *in_s) - sum_s**2 / count
         return both, np.maximum(var_m, 0.0), np.maximum(var_s, 0.0), count
+
+
+def _sums_between_gaps(
+    m: FloatArray, s: FloatArray, valid: FloatArray, *, centred: bool
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """The sums of `_Grid._sums` over the samples outside gaps."""
+    if centred:
+        m, s = m - np.average(m, weights=valid), s - s.mean()
+    ones = np.ones(len(s))
+
+    def over(of_log: FloatArray, of_run: FloatArray) -> FloatArray:
+        return np.asarray(signal.correlate(of_log, of_run, mode="full", method="fft"))
+
+    inside = np.rint(over(valid, ones))
+    count = np.maximum(inside, 1.0)
+    both, sum_m, sum_s = over(valid * m, s), over(valid * m, ones), over(valid, s)
+    var_m, var_s = over(valid * m * m, ones), over(valid, s * s)
+    if centred:
+        both, var_m, var_s = both - sum_m * sum_s / count, var_m - sum_m**2 / count, var_s - sum_s**2 / count
+    return both, np.maximum(var_m, 0.0), np.maximum(var_s, 0.0), inside
 
 
 def _total(
@@ -175,6 +204,9 @@ def _refined(run: RunForces, log: ForceLog, axes: Sequence[int], lag_s: float, r
     if count < 4:
         return lag_s
     measured = log.force_n[first : first + count][:, axes]
+    if log.gaps:
+        good = outside_gaps(log, log.t_s[first : first + count])
+        measured = np.where(good[:, None], measured - measured[good].mean(axis=0), 0.0) if good.any() else measured
     simulated = simulated_at_rate(run, float(log.t_s[first]) - lag_s, count, rate)[:, axes]
     taper = signal.windows.tukey(count, min(1.0, 0.05 + 16.0 / count))[:, None]
     size = fft.next_fast_len(2 * count, real=True)
@@ -270,8 +302,7 @@ def better_axes(run: RunForces, log: ForceLog) -> tuple[dict[str, str], float]:
         return {a: a for a in log.axes}, 0.0
     sums = {(i, j): grid._sums(i, j, centred=False) for i in axes for j in axes}
     count = sums[axes[0], axes[0]][3]
-    shorter = min(len(grid.run_n), len(grid.log_n))
-    weight = np.where(count >= _LEAST_OVERLAP * shorter, np.sqrt(count / shorter), 0.0)
+    weight = np.where(count >= _LEAST_OVERLAP * grid.shorter, np.sqrt(count / grid.shorter), 0.0)
     var_m = sum((sums[i, i][1] for i in axes), np.zeros(1))
     var_s = sum((sums[j, j][2] for j in axes), np.zeros(1))
     power = np.sqrt(var_m * var_s)

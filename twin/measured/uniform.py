@@ -20,6 +20,9 @@ _MOST_RATIO = 20000
 _PLAIN_RATIO = 64
 #: Largest number of samples of an even grid for each measured one.
 _MOST_FILL = 20
+#: A log in parts with gaps between them may have more, up to this many, where the parts have samples enough.
+_MOST_SAMPLES = 4_000_000
+_LEAST_PART = 16
 
 
 def uniform(log: ForceLog) -> ForceLog:
@@ -31,13 +34,22 @@ def uniform(log: ForceLog) -> ForceLog:
     if np.abs(np.cumsum(steps - 1.0)).max(initial=0.0) < _EVEN:
         return log
     count = int(log.duration_s * log.rate_hz + _EVEN) + 1
-    if count > _MOST_FILL * len(log.t_s):
+    apart = bool(log.gaps) and len(log.t_s) >= _LEAST_PART * (len(log.gaps) + 1)
+    if count > max(_MOST_FILL * len(log.t_s), _MOST_SAMPLES) and apart:
+        begin, end = max(log.gaps, key=lambda gap: gap[1] - gap[0])
+        raise MeasuredError(
+            f"{log.source}: a gap of {end - begin:g} s, from {begin:g} to {end:g} s, is too long to be bridged at "
+            f"{log.rate_hz:g} Hz, expected at most {_MOST_SAMPLES / log.rate_hz:g} s in all; split the log there"
+        )
+    if count > _MOST_FILL * len(log.t_s) and not apart:
         raise MeasuredError(
             f"{log.source}: {len(log.t_s)} samples over {log.duration_s:g} s, expected about {count} at "
             f"{log.rate_hz:g} Hz: most of the log is missing"
         )
     t_s = log.t_s[0] + np.arange(count) / log.rate_hz
     note = "uneven or missing samples: linear between neighbours on an even grid"
+    if log.gaps:
+        note += "; gaps take no part in the comparison"
     return replace(_at(log, t_s), notes=(*log.notes, note))
 
 

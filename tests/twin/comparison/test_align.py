@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.compared import log_of, run
 
+from twin.arrays import frozen
+from twin.comparison.comparison import compare
 from twin.comparison.delay import better_axes, find_delay
 from twin.comparison.phase import best_shift
 from twin.errors import CompareError
+from twin.measured.log import gaps_of
+from twin.measured.settings import CompareSettings
 
 #: Noise of a tenth of the signal: 20 dB.
 SNR_20_DB = 0.1
@@ -90,3 +96,23 @@ def test_the_phase_of_a_window_is_found() -> None:
         found, moved = best_shift(RUN.at, t_s, RUN.at(t_s + shift), 60.0 / 3600.0)
         assert np.mod(found - shift + 0.004, 60.0 / 3600.0 / 2) == pytest.approx(0.004, abs=2e-5)
         np.testing.assert_allclose(moved, RUN.at(t_s + shift), atol=1.0)
+
+
+def test_parts_of_a_log_with_a_long_gap_between_them_are_compared() -> None:
+    """Entry and exit of the cut, recorded apart: only together they show the delay of what lies between."""
+    full = log_of(RUN, lag_s=-0.21, noise=0.02, rate_hz=2500.0, span_s=(0.3, 7.2))
+    kept = (full.t_s < 1.0) | (full.t_s > 6.4)
+    t_s = full.t_s[kept]
+    log = replace(
+        full,
+        t_s=frozen(t_s, "t_s", (None,)),
+        force_n=frozen(full.force_n[kept], "force_n", (None, 3)),
+        gaps=gaps_of(t_s, 2500.0),
+    )
+    found = compare(RUN, log, CompareSettings())
+    assert found.lag_s == pytest.approx(-0.21, abs=0.1 / 2500.0)
+    assert len(found.t_s) == kept.sum()
+    assert found.score > 0.99
+    with pytest.raises(CompareError, match=r"the run, 0.0000 to 7.6000 s, lies in a gap of the log"):
+        far = replace(log, t_s=frozen(np.where(t_s > 5.0, t_s + 20.0, t_s), "t_s", (None,)))
+        compare(RUN, replace(far, gaps=gaps_of(far.t_s, 2500.0)), CompareSettings(lag_s=10.0))

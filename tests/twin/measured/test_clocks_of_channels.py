@@ -271,8 +271,15 @@ def test_a_rate_that_is_damage_is_not_used(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("word", "mark"), [("Comma", ","), ("Semicolon", ";")])
 def test_other_separators_of_lvm(word: str, mark: str, tmp_path: Path) -> None:
     lines = [*head("One"), *segment(from_zero(), "One"), *segment(from_zero(5.0), "One", stamp="10:00:05.00")]
-    lines = [line.replace("\t", mark).replace("Separator,Tab", f"Separator,{word}") for line in lines]
-    lines = [
-        line.replace("Separator;Tab", "Separator\tSemicolon").replace("X_Columns;", "X_Columns\t") for line in lines
-    ]
+    lines = [line.replace("\t", mark).replace(f"Separator{mark}Tab", f"Separator{mark}{word}") for line in lines]
     as_expected(read(tmp_path, lines), from_zero(), from_zero(5.0))
+    lines = [line.replace(f"Separator{mark}{word}", f"Separator\t{word}") for line in lines]
+    as_expected(read(tmp_path, lines), from_zero(), from_zero(5.0))
+
+
+def test_segments_of_lvm_at_another_rate_are_refused(tmp_path: Path) -> None:
+    lines = [*head("No"), *segment(from_zero(), "No", stamp="10:00:05.00")]
+    slower = segment(from_zero(), "No", stamp="10:00:09.00")
+    slower = ["Delta_X" + "\t0.002" * 3 if line.startswith("Delta_X") else line for line in slower]
+    with pytest.raises(MeasuredError, match="segment 2 is sampled at 500 Hz, the first one at 1000 Hz"):
+        read(tmp_path, [*lines, *slower])

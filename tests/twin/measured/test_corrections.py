@@ -129,6 +129,15 @@ def test_most_of_a_log_missing_is_refused() -> None:
         uniform(made(t_s, np.zeros((20, 3))))
 
 
+def test_parts_with_a_long_gap_between_them_are_put_on_one_grid() -> None:
+    t_s = np.concatenate([np.arange(100) / RATE, 5.0 + np.arange(100) / RATE])
+    log = uniform(made(t_s, np.ones((200, 3))))
+    assert log.gaps == ((t_s[99], t_s[100]),)
+    assert "gaps take no part" in log.notes[-1]
+    with pytest.raises(MeasuredError, match=r"a gap of 50000 s, from .* is too long .* split the log there"):
+        uniform(made(np.where(t_s < 1.0, t_s, t_s + 49995.0), np.ones((200, 3))))
+
+
 def test_offset_and_drift_are_found_in_air() -> None:
     log = log_of(run(), add_n=(3.0, -2.0, 1.0), drift_n_s=(0.5, -0.2, 0.1), noise=0.01)
     air = ((0.0, 0.9), (7.1, 7.6))

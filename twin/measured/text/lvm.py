@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +20,8 @@ from twin.measured.text.reader import text_of
 _END = "***End_of_Header***"
 _SPECIAL = ("***Start_Special***", "***End_Special***")
 _MAGIC = "LabVIEW Measurement"
+#: The mark between a key of the file's own header and its value, whatever separates the columns.
+_MARK = re.compile(r"[\t,;]")
 _SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";"}
 
 
@@ -116,8 +119,7 @@ def _settings(lines: Sequence[str]) -> _Style:
     for line in lines:
         if line.startswith(_END):
             break
-        key, _, value = line.replace(",", "\t", 1).partition("\t") if "\t" not in line else line.partition("\t")
-        value = value.strip()
+        key, value = [*map(str.strip, _MARK.split(line, maxsplit=1)), ""][:2]
         if key == "Separator":
             delimiter = _SEPARATORS.get(value.lower(), value or "\t")
         elif key == "Decimal_Separator":

@@ -107,7 +107,8 @@ def joined_times(path: Path, parts: Sequence[SegmentTimes]) -> JoinedTimes:
     """The segments on one clock.
 
     Raises:
-        MeasuredError: segments that overlap, or whose column of time begins again without a moment in the header.
+        MeasuredError: segments of several rates, that overlap, or whose column of time begins again without a moment in
+            the header.
     """
     first = parts[0]
     notes = list(dict.fromkeys(note for part in parts for note in part.notes))
@@ -121,6 +122,11 @@ def joined_times(path: Path, parts: Sequence[SegmentTimes]) -> JoinedTimes:
     unclocked = 0
     for number, part in enumerate(parts[1:], 2):
         last = float(times[-1][-1])
+        if min(part.step_s, first.step_s) > 0.0 and abs(part.step_s / first.step_s - 1.0) > _SAME:
+            raise MeasuredError(
+                f"{path}:{part.line}: segment {number} is sampled at {1.0 / part.step_s:g} Hz, the first one at "
+                f"{1.0 / first.step_s:g} Hz; expected one rate: split the file there"
+            )
         shifted = _placed(path, number, part, parts[number - 2], first, last)
         unclocked += shifted is None
         times.append(part.x_s - part.x_s[0] + last + part.step_s if shifted is None else shifted)
