@@ -24,6 +24,8 @@ _EPOCH_S = (6e8, 4e9)
 _DAY_NUMBERS = ((30_000.0, 60_000.0), (720_000.0, 760_000.0))
 #: Over midnight a step may differ from the usual one by this many of it, or by this much.
 _DAY_JUMP, _DAY_JUMP_S = 3.0, 1e-3
+#: Times that repeat must step this many times at least before a rate can be counted.
+_LEAST_STEPS = 2
 #: Rates outside are damage.
 _POSSIBLE_HZ = (1e-6, 1e12)
 #: Rates outside are a sign of a wrong unit of time.
@@ -239,6 +241,11 @@ def _increasing(
     if t_s[-1] <= t_s[0]:
         raise MeasuredError(f"{path}: the time does not increase at {t_s[0]:g} s, expected increasing time")
     if (steps == 0.0).any():
+        if np.count_nonzero(steps) < _LEAST_STEPS and not table.rate_hz:
+            raise MeasuredError(
+                f"{path}: the time column is too coarse: {len(t_s)} samples at {np.count_nonzero(steps) + 1} times; "
+                "give the sampling rate by --rate HZ"
+            )
         rate = _rate_of_coarse(t_s, steps)
         if table.rate_hz and abs(rate / table.rate_hz - 1.0) < _SAME_RATE:
             rate = table.rate_hz

@@ -32,7 +32,9 @@ _UNITS: dict[str, tuple[Quantity, float]] = {
     **dict.fromkeys(("hz", "s/s", "1/s", "samples/s"), ("rate", 1.0)),
     "khz": ("rate", 1e3),
     "rpm": ("other", 1.0),
-    **dict.fromkeys(("digit", "digits", "counts", "cts", "bit", "bits", "lsb", "adu"), ("other", 1.0)),
+    **dict.fromkeys(
+        ("digit", "digits", "count", "counts", "cnt", "cts", "adc", "bit", "bits", "lsb", "adu"), ("other", 1.0)
+    ),
     **dict.fromkeys(
         ("g", "m/s2", "m/s^2", "m/s²", "mm", "um", "m", "w", "kw", "a", "c", "°c", "%", "bar"), ("other", 1.0)
     ),

@@ -69,6 +69,19 @@ def test_midnight(form: str, tmp_path: Path) -> None:
     as_expected(read(tmp_path, written(lambda t: t.strftime(FORMS[form]), begin)))
 
 
+@pytest.mark.parametrize(
+    "form", ["%Y. %m. %d. %H:%M:%S.%f", "%Y年%m月%d日 %H:%M:%S.%f", "%Y%m%dT%H%M%S.%f", "%a %b %d %H:%M:%S.%f %Y"]
+)
+def test_dates_of_other_countries_over_midnight(form: str, tmp_path: Path) -> None:
+    as_expected(read(tmp_path, written(lambda t: t.strftime(form), datetime(2019, 12, 31, 23, 59, 59))))
+
+
+def test_times_that_step_once_show_no_rate(tmp_path: Path) -> None:
+    text = written(lambda t: t.strftime("%H:%M:%S"), datetime(2020, 1, 1, 9, 59, 59, 990000))
+    with pytest.raises(MeasuredError, match=r"too coarse: \d+ samples at [12] times; give the sampling rate by --rate"):
+        read(tmp_path, text)
+
+
 def test_a_full_hour_in_minutes_and_seconds(tmp_path: Path) -> None:
     log = read(tmp_path, written(lambda t: t.strftime("%M:%S.%f"), datetime(2020, 1, 1, 9, 59, 59)))
     as_expected(log)

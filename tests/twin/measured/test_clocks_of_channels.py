@@ -283,3 +283,24 @@ def test_segments_of_lvm_at_another_rate_are_refused(tmp_path: Path) -> None:
     slower = ["Delta_X" + "\t0.002" * 3 if line.startswith("Delta_X") else line for line in slower]
     with pytest.raises(MeasuredError, match="segment 2 is sampled at 500 Hz, the first one at 1000 Hz"):
         read(tmp_path, [*lines, *slower])
+
+
+@pytest.mark.parametrize(("again", "begin"), [(5.0, 5.0), (0.0, N * STEP), (N * STEP, N * STEP), (-5.0, None)])
+def test_tdms_files_written_in_parts(again: float, begin: float | None, tmp_path: Path) -> None:
+    from nptdms import ChannelObject, TdmsWriter
+
+    def written(start: float) -> list[ChannelObject]:
+        moment = np.datetime64("2024-05-01T10:00:00", "us") + np.timedelta64(round(1e6 * start), "us")
+        stated = {"wf_increment": STEP, "wf_start_time": moment}
+        return [ChannelObject("dyno", f"F{a}", force(from_zero())[:, i], stated) for i, a in enumerate("xyz")]
+
+    with TdmsWriter(tmp_path / "a.tdms") as writer:
+        writer.write_segment(written(0.0))
+        writer.write_segment(written(again))
+    if begin is None:
+        with pytest.raises(MeasuredError, match=r"dyno/Fx begins again at sample 41, 5.04 s before the end"):
+            read_forces(tmp_path / "a.tdms")
+        return
+    log = read_forces(tmp_path / "a.tdms")
+    np.testing.assert_allclose(log.t_s, np.concatenate([from_zero(), from_zero(begin)]), atol=1e-9)
+    assert log.rate_hz == pytest.approx(1.0 / STEP)

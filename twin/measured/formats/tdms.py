@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -11,9 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from twin.arrays import FloatArray
 from twin.errors import MeasuredError
 from twin.measured.formats.arrays_in import columns_table
 from twin.measured.formats.one_clock import Named
+from twin.measured.formats.tdms_parts import Part, parts_of, times_of
 from twin.measured.table import Table
 
 _LONGEST_NOTE = 120
@@ -33,10 +35,12 @@ def read_tdms(path: Path, group: str | None = None) -> Table:
     try:
         with _warnings() as notes:
             file = TdmsFile.read(path)
+            parts = parts_of(path)
     except Exception as error:  # npTDMS raises many kinds on damaged files
         raise MeasuredError(f"{path}: no TDMS file that can be read: {error}") from error
     arrays: list[Named] = []
     starts: dict[str, tuple[Any, float]] = {}
+    times: dict[str, FloatArray | None] = {}
     for part in file.groups():
         for channel in part.channels():
             values = _numbers(channel)
@@ -45,7 +49,10 @@ def read_tdms(path: Path, group: str | None = None) -> Table:
             name, properties = f"{part.name}/{channel.name}", channel.properties
             step = float(properties.get("wf_increment", 0.0))
             arrays.append(Named(name, _unit(channel), values, 1.0 / step if step > 0.0 else None))
-            starts[name] = properties.get("wf_start_time"), float(properties.get("wf_start_offset", 0.0))
+            starts[name] = _start(properties, parts.get(channel.path, []))
+            if step > 0.0:
+                times[name] = times_of(path, name, parts.get(channel.path, []), len(values), step)
+    arrays += _time_arrays(path, arrays, times, starts)
     read = columns_table(path, "TDMS", _started(arrays, starts), {}, group)
     return replace(read, notes=(*read.notes, *notes))
 
@@ -89,6 +96,33 @@ def _started(arrays: list[Named], starts: dict[str, tuple[Any, float]]) -> list[
         seconds = 0.0 if moment is None else float((moment - first) / np.timedelta64(1, "s"))
         made.append(replace(array, start_s=seconds + offset if known else None))
     return made
+
+
+def _start(properties: Mapping[str, Any], parts: Sequence[Part]) -> tuple[Any, float]:
+    """Start time of a waveform and the offset from it; of its first part where there are several."""
+    if len(parts) > 1 and parts[0].first == 0:
+        return np.datetime64(round(1e6 * parts[0].start_s), "us"), 0.0
+    return properties.get("wf_start_time"), float(properties.get("wf_start_offset", 0.0))
+
+
+def _time_arrays(
+    path: Path, arrays: Sequence[Named], times: Mapping[str, FloatArray | None], starts: dict[str, tuple[Any, float]]
+) -> Iterator[Named]:
+    """A column of time for each group whose channels were written in parts with gaps between them.
+
+    Raises:
+        MeasuredError: channels of a group with gaps of different places.
+    """
+    for group in dict.fromkeys(a.name.rpartition("/")[0] for a in arrays if times.get(a.name) is not None):
+        own = [a for a in arrays if a.rate_hz and a.name.rpartition("/")[0] == group]
+        first = next(a for a in own if times[a.name] is not None)
+        t_s = times[first.name]
+        if t_s is None or any((t := times[a.name]) is None or not np.array_equal(t, t_s) for a in own):
+            names = ", ".join(a.name for a in own)
+            raise MeasuredError(f"{path}: {names} have gaps at different samples; expected forces recorded together")
+        name = f"{group}/Time of the parts"
+        starts[name] = starts[first.name]
+        yield Named(name, "s", t_s, first.rate_hz)
 
 
 def _unit(channel: Any) -> str:

@@ -32,12 +32,16 @@ _TIME = (
 _WORD = r"[^\W\d_]{3,9}"
 _DATE = (
     r"(?:[A-Za-z]{2,3}[.,]?\s+)?(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}(?P<mark>[-/.])\d{1,2}(?P=mark)(?:\d{4}|\d{2})|"
+    r"\d{4}\.\s?\d{1,2}\.\s?\d{1,2}\.|\d{4}年\s?\d{1,2}月\s?\d{1,2}日|"
     rf"\d{{1,2}}[-\s./]+{_WORD}[-\s./,]+\d{{4}}|{_WORD}[-\s.]+\d{{1,2}}[-\s,]+\d{{4}}|\d{{4}}[-\s]+{_WORD}[-\s]+\d{{1,2}})"
 )
 _TIME_ONLY = re.compile(rf"{_TIME}$")
 _SHORT = re.compile(r"(?P<m>\d{1,3}):(?P<s>\d{2})(?:[.,](?P<f>\d+))?$")
 _DATE_ONLY = re.compile(rf"{_DATE}$")
 _STAMP = re.compile(rf"{_DATE}(?:T|[\s,_]+){_TIME}$")
+#: ``20240301T235959.9`` as in ISO 8601, and ``Fri Mar 01 23:59:59 2024`` as C's ctime writes it.
+_COMPACT = re.compile(r"(?P<day>(?:19|20)\d{6})[T\s](?P<h>\d{2})(?P<m>\d{2})(?P<s>\d{2}(?:[.,]\d+)?)Z?$")
+_YEAR_LAST = re.compile(r"(?:[A-Za-z]{3}\s+)?(?P<day>[A-Za-z]{3}\s+\d{1,2})\s+(?P<time>\S+)\s+(?P<year>\d{4})$")
 _TIME_FIRST = re.compile(rf"{_TIME}[\s,]+{_DATE}$")
 
 #: A date, a time of day, both, or minutes and seconds.
@@ -60,7 +64,12 @@ class Moment:
 
 def moment(text: str) -> Moment | None:
     """A field as a moment, None where it is not one: ``12:30:01.25``, ``1/2/2020 10:00:00 AM``, ``02.01.2020``."""
+    if found := _COMPACT.match(text):
+        day = "-".join((found["day"][:4], found["day"][4:6], found["day"][6:]))
+        return moment(f"{day} {found['h']}:{found['m']}:{found['s']}")
     if ":" in text:
+        if found := _YEAR_LAST.match(text):
+            return moment(f"{found['day']} {found['year']} {found['time']}")
         if found := _TIME_ONLY.match(text):
             return _moment("time", "", found)
         if found := _STAMP.match(text) or _TIME_FIRST.match(text):
@@ -89,7 +98,7 @@ def _moment(kind: ClockKind, day: str, found: re.Match[str]) -> Moment | None:
 @lru_cache(maxsize=1024)
 def _readings(text: str) -> tuple[date | None, date | None]:
     """A date with month and day in their likelier order, and in the other one where both occur."""
-    pieces = [p for p in re.split(r"[-/.,\s]+", text) if p]
+    pieces = [p for p in re.split(r"[-/.,\s年月日]+", text) if p]
     words = [p for p in pieces if not p.isdigit()]
     if words:
         month = _MONTHS.get(words[0].lower()[:3])

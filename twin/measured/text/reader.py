@@ -95,7 +95,7 @@ def parse_text(
         notes=(_layout_note(layout), *read.notes),
         not_read=tuple(_not_read(lines, layout, header, first_line, read.clock is None)),
     )
-    return scaled(found, lines[: layout.first])
+    return scaled(found, lines[: layout.first], layout.delimiter, layout.marks)
 
 
 def _not_read(lines: Sequence[str], layout: Layout, header: Header, first_line: int, timeless: bool) -> Iterator[str]:
