@@ -77,9 +77,9 @@ def test_dates_of_other_countries_over_midnight(form: str, tmp_path: Path) -> No
 
 
 def test_times_that_step_once_show_no_rate(tmp_path: Path) -> None:
-    text = written(lambda t: t.strftime("%H:%M:%S"), datetime(2020, 1, 1, 9, 59, 59, 990000))
-    with pytest.raises(MeasuredError, match=r"too coarse: \d+ samples at [12] times; give the sampling rate by --rate"):
-        read(tmp_path, text)
+    rows = "".join(f"10:00:0{k // 50};{k};1;2\n" for k in range(100))
+    with pytest.raises(MeasuredError, match=r"too coarse: 100 samples at 2 times; give the sampling rate by --rate"):
+        read(tmp_path, f"Time;Fx [N];Fy [N];Fz [N]\n{rows}")
 
 
 def test_a_full_hour_in_minutes_and_seconds(tmp_path: Path) -> None:
