@@ -40,13 +40,15 @@ _LOOP = re.compile(
 _PERCENT = re.compile(rb"^[ \t]*%", re.MULTILINE)
 
 
-#: Characters of a serial line that frame a program or fill pauses: NUL, DC1 to DC4, DEL; at the end also EOT and SUB.
+#: Characters of a serial line that frame a program or fill pauses: NUL, DC1 to DC4 (which also stop and start the
+#: line), DEL; at the beginning also STX, at the end ETX, EOT and SUB.
 _FILLERS = b"\x00\x11\x12\x13\x14\x7f"
 _FRAMING = re.compile(
-    rb"\A[\x00\x11-\x14\x7f\s]+|^[\x00\x11-\x14\x7f]+(?=[ \t]*%)|[\x00\x04\x11-\x14\x1a\x7f\s]+\Z"
-    rb"|(?<=%)[\x00\x11-\x14\x7f]+(?=\s)|(?<=\n)[\x00\x7f]+",
-    re.MULTILINE,
+    rb"\A[\x00\x02\x11-\x14\x7f\s]+|[\x00\x03\x04\x11-\x14\x1a\x7f\s]+\Z"
+    rb"|(?<=%)[\x00\x11-\x14\x7f]+(?=\s)|(?<=\n)[\x00\x11-\x14\x7f]+"
 )
+#: FANUC punches the end of a block as LF CR CR.
+_PUNCHED_ENDS = re.compile(rb"\n\r+(?![\r\n])")
 
 
 class Spot(NamedTuple):
@@ -228,8 +230,10 @@ def _decoded(line: bytes) -> str:
 
 
 def _without_transmission(text: bytes) -> bytes:
-    """The text without the characters of a serial line around it and the fillers after its line ends."""
-    removed = _FILLERS + b"\x04\x1a"
+    """The text without the characters of a serial line around it and after its line ends."""
+    if b"\n\r" in text:
+        text = _PUNCHED_ENDS.sub(b"\n", text)
+    removed = _FILLERS + b"\x02\x03\x04\x1a"
     if not any(character in text for character in removed):
         return text
     bare = _FRAMING.sub(lambda match: match[0].translate(None, removed), text)

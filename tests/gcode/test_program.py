@@ -135,6 +135,23 @@ def test_a_leader_before_the_first_percent_is_skipped_with_a_notice(run, refusal
     assert refusal(text, "linuxcnc").place.line == 1
 
 
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"%\n\r\rO1\n\r\rG0 X1\n\r\rM30\n\r\r%\n\r\r",
+        b"\x02\x12%\r\nO1\r\nG0 X1\r\nM30\r\n%\x14\x03",
+        b"%\n\x12O1\n\x13\x11G0 X1\nM30\n%",
+        b"\x12\r\n\r\n%\r\nO1\r\n\r\nG0 X1\r\nM30\r\n%\x00\x00",
+    ],
+    ids=["line-ends-as-punched", "start-and-end-of-text", "line-stopped-and-started", "blank-lines"],
+)
+def test_what_a_serial_line_adds_to_a_program_is_skipped(content: bytes, tmp_path: Path) -> None:
+    (tmp_path / "a.nc").write_bytes(content)
+    assert check(read_program(tmp_path / "a.nc")) == []
+    blocks = of(interpret_file(tmp_path / "a.nc"), Block)
+    assert [block.place.text for block in blocks if block.place.text] == ["O1", "G0 X1", "M30"]
+
+
 def test_text_before_a_closing_percent_is_no_leader(run, refusal) -> None:
     assert len(of(run("G0 X1\nX2\n%\nrest"), LinearMotion)) == 2
     assert refusal("FOO BAR\nX2\n%\n").code == "missing-number"

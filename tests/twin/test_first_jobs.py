@@ -19,6 +19,17 @@ from twin.settings.toml_hints import hint
     [
         ("diameter_mm = 8,0", "write diameter_mm = 8.0, with a decimal point"),
         ("shank = { diameter_mm = 8,5, length_mm = 20 }", "write diameter_mm = 8.5, with a decimal point"),
+        (
+            "rapid_mm_min = 48,000",
+            "write rapid_mm_min = 48000 or rapid_mm_min = 48.000, with a decimal point",
+        ),
+        ("rapid_mm_min = 48.000,5", "write rapid_mm_min = 48000.5, without marks between thousands"),
+        ("rapid_mm_min = 48'000", "write rapid_mm_min = 48000, without marks between thousands"),
+        ("diameter_mm = 10.", "write diameter_mm = 10.0, with a digit on both sides of the point"),
+        ("step_mm = -.5  # fine", "write step_mm = -0.5, with a digit on both sides of the point"),
+        ("number = 01", "write number = 1, without 0 in front"),
+        ("teeth = 2;", "write teeth = 2, with nothing after it"),
+        ('kind = "ball",', 'write kind = "ball", with nothing after it'),
         ("diameter_mm = 8.0 mm", "write diameter_mm = 8.0, without a unit"),
         ("kind = ball", 'write kind = "ball", in quotes'),
         ("kind = ball  # a comment", 'write kind = "ball", in quotes'),
@@ -48,6 +59,23 @@ def test_a_line_that_is_not_toml_comes_with_what_to_write(tmp_path: Path, line: 
 def test_a_windows_path_whose_backslashes_are_escapes(tmp_path: Path) -> None:
     with pytest.raises(JobError, match="a backslash begins an escape: write the path in single quotes"):
         load_job(job_folder(tmp_path, program__file="C:\temp\new.nc"))
+    with pytest.raises(JobError, match=r'output.mcap = "C:.temp.run.mcap": expected a path; a backslash begins'):
+        load_job(job_folder(tmp_path, output__mcap="C:\temp\run.mcap"))
+
+
+@pytest.mark.parametrize(
+    ("encoding", "message"),
+    [
+        ("utf-16", "job.toml: the text is in UTF-16; expected a job file (TOML) in UTF-8"),
+        ("utf-32", "job.toml: the text is in UTF-32; expected a job file (TOML) in UTF-8"),
+        ("latin-1", "job.toml: byte 0xe4 in line 2 is not UTF-8; expected a job file (TOML) in UTF-8"),
+    ],
+)
+def test_a_job_in_another_encoding_names_it(tmp_path: Path, encoding: str, message: str) -> None:
+    (tmp_path / "job.toml").write_bytes("[program]\n# Fräsen\n".encode(encoding))
+    with pytest.raises(JobError) as caught:
+        load_job(tmp_path / "job.toml")
+    assert str(caught.value).endswith(message)
 
 
 @pytest.mark.parametrize(

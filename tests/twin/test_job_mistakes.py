@@ -289,7 +289,7 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
 def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     path = tmp_path / "job.toml"
     path.write_bytes(b"[program]\nfile = '\xff'\n")
-    assert problems(path) == ["byte 18 is not UTF-8; expected a job file (TOML)"]
+    assert problems(path) == ["byte 0xff in line 2 is not UTF-8; expected a job file (TOML) in UTF-8"]
 
 
 ANYTHING = st.recursive(

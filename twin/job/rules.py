@@ -137,10 +137,7 @@ def files_are_there(facts: Facts, folder: Path) -> Iterator[Problem]:
         if name is None:
             continue
         path = folder / name
-        if any(ord(letter) < 32 for letter in str(name)):
-            expected = f"{what}; a backslash begins an escape: write the path in single quotes, or / for each \\"
-            yield wrong(location, name, expected)
-        elif not path.is_file():
+        if not path.is_file():
             why = "is a folder" if path.is_dir() else "does not exist"
             yield wrong(location, name, f"{what}; {path} {why}")
 

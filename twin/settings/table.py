@@ -6,10 +6,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Strict
+from pydantic import AfterValidator, BaseModel, ConfigDict, Strict
 
 Point: TypeAlias = Annotated[tuple[float, float, float], Strict(False)]
-FilePath: TypeAlias = Annotated[Path, Strict(False)]
+
+
+def _without_escapes(path: Path) -> Path:
+    """The path; one with control characters is refused: in double quotes, TOML takes a backslash for an escape."""
+    if any(ord(letter) < 32 or ord(letter) == 127 for letter in str(path)):
+        raise ValueError(
+            "path: expected a path; a backslash begins an escape: write the path in single quotes, or / for each \\"
+        )
+    return path
+
+
+FilePath: TypeAlias = Annotated[Path, Strict(False), AfterValidator(_without_escapes)]
 
 
 class Table(BaseModel):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 import tomllib
 from pathlib import Path
@@ -11,6 +12,7 @@ from twin.errors import SettingsError
 from twin.settings.file_kinds import kind_by_suffix, kind_by_text, other_kind
 from twin.settings.toml_hints import hint
 
+_UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _POSITION = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
@@ -59,7 +61,16 @@ def read_text(path: Path, what: str, refuse: type[SettingsError] = SettingsError
         why = (error.strerror or str(error)).lower()
         raise refuse(str(path), [f"cannot be read: {why}; expected {what}"]) from error
     except UnicodeDecodeError as error:
-        raise refuse(str(path), [f"byte {error.start} is not UTF-8; expected {what}"]) from error
+        raise refuse(str(path), [f"{_encoding_of(error)}; expected {what} in UTF-8"]) from error
+
+
+def _encoding_of(error: UnicodeDecodeError) -> str:
+    """The encoding that a text has instead of UTF-8, or the byte that shows that it has another one."""
+    for marks, name in (((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE), "UTF-32"), (_UTF16, "UTF-16")):
+        if bytes(error.object).startswith(marks):
+            return f"the text is in {name}"
+    line = bytes(error.object).count(b"\n", 0, error.start) + 1
+    return f"byte 0x{error.object[error.start]:02x} in line {line} is not UTF-8"
 
 
 def parse_toml(text: str, source: str, refuse: type[SettingsError] = SettingsError) -> dict[str, Any]:

@@ -11,8 +11,15 @@ _END = r"\s*,?\s*(?:#.*)?$"
 _HINTS: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], str]], ...] = (
     (
         re.compile(_KEY + r"([-+]?\d+),(\d+)(?![\d.])"),
-        lambda m: f"write {m[1]} = {m[2]}.{m[3]}, with a decimal point",
+        lambda m: _with_point(m[1], m[2], m[3]),
     ),
+    (re.compile(_KEY + r"([-+]?\d*)\.(\d*)" + _END), lambda m: _with_digits(m[1], m[2], m[3])),
+    (
+        re.compile(_KEY + r"([-+]?\d{1,3}(?:['., ]\d{3})+)(?:[.,](\d*))?" + _END),
+        lambda m: f"write {m[1]} = {_ungrouped(m[2], m[3])}, without marks between thousands",
+    ),
+    (re.compile(_KEY + r"0+(\d+)" + _END), lambda m: f"write {m[1]} = {m[2]}, without 0 in front"),
+    (re.compile(_KEY + r"([^#\"']*\w|\"[^\"]*\"|'[^']*')\s*[;,]" + r"\s*(?:#.*)?$"), lambda m: _unended(m[1], m[2])),
     (
         re.compile(_KEY + r"([-+]?\d+(?:\.\d+)?)\s*(?:mm|cm|m|um|deg|°|s|min|rpm|inch|in|%|\")" + _END),
         lambda m: f"write {m[1]} = {m[2]}, without a unit",
@@ -37,6 +44,27 @@ def hint(line: str) -> str | None:
         if match:
             return words(match)
     return None
+
+
+def _with_point(key: str, whole: str, part: str) -> str:
+    """A comma before three digits may also stand between thousands."""
+    thousands = len(part) == 3 and 0 < len(whole.lstrip("+-")) <= 3 and int(whole) != 0
+    either = f"{key} = {whole}{part} or " if thousands else ""
+    return f"write {either}{key} = {whole}.{part}, with a decimal point"
+
+
+def _with_digits(key: str, whole: str, part: str) -> str:
+    sign = "-" if whole.startswith("-") else ""
+    return f"write {key} = {sign}{whole.lstrip('+-') or '0'}.{part or '0'}, with a digit on both sides of the point"
+
+
+def _ungrouped(whole: str, part: str | None) -> str:
+    digits = "".join(letter for letter in whole if letter.isdigit() or letter in "+-")
+    return f"{digits}.{part}" if part else digits
+
+
+def _unended(key: str, value: str) -> str:
+    return f"write {key} = {value}, with nothing after it"
 
 
 def _flag(word: str) -> str:

@@ -191,7 +191,7 @@ def test_a_name_on_the_command_line_is_checked_too() -> None:
     [
         (None, "cannot be read: no such file or directory; expected a file of test cuts (TOML)"),
         (b"[tool\n", "not valid TOML"),
-        (b"\xff\xfe\x00", "byte 0 is not UTF-8; expected a file of test cuts (TOML)"),
+        (b"\xff\xfe\x00", "the text is in UTF-16; expected a file of test cuts (TOML) in UTF-8"),
     ],
 )
 def test_files_that_cannot_be_read(tmp_path: Path, content: bytes | None, message: str) -> None:
