@@ -16,7 +16,7 @@ from twin.cam.passes.clear_moves import ClearOptions, Obstacle, part_obstacle, w
 from twin.cam.passes.finishing import FinishingOptions, finishing, stepover_for_scallop
 from twin.cam.passes.raster_baseline import row_cuts, scanned
 from twin.cam.passes.roughing import RoughingOptions, Workspace, contour_roughing
-from twin.cam.passes.semi_finishing import SemiOptions, remaining_cuts, semi_finishing
+from twin.cam.passes.semi_finishing import SemiOptions, clear_maps, remaining_cuts, semi_finishing
 from twin.cam.path.machining_time import PathTime, machining_time
 from twin.cam.path.toolpath import ToolPath
 from twin.cam.path.tour import METHODS, Search
@@ -220,12 +220,13 @@ class MoldPlan:
         levels = remaining_cuts(
             self.space, tool, options, stock, lambda k, n: self._at("semi", "finding rest material", 0.7 * k / n)
         )
+        maps = clear_maps(levels, self.space)
         best: tuple[ToolPath, PathTime, Dexels] | None = None
         times: dict[str, PathTime] = {}
         for method in METHODS[: METHODS.index(table.method) + 1]:
             self._at("semi", f"ordering, {method}", 0.7 + 0.1 * METHODS.index(method))
             search = replace(options.search, method=method)
-            path = semi_finishing(self.space, tool, replace(options, search=search), dynamics, levels, before)
+            path = semi_finishing(self.space, tool, replace(options, search=search), dynamics, levels, maps, before)
             after = before.copy()
             path = self._cleared(table, path, after)
             spent = machining_time(path, dynamics)
@@ -290,7 +291,8 @@ class MoldPlan:
         allowance = table.allowance_mm if isinstance(table, LevelStage) else 0.0
         key = (table.tool, allowance)
         if key not in self._obstacles:
-            self._obstacles[key] = part_obstacle(self.surface, self.shape(table), allowance, self.cutter(table))
+            exact = self.cutter(table) if allowance == 0.0 else None
+            self._obstacles[key] = part_obstacle(self.surface, self.shape(table), allowance, exact)
         clear = ClearOptions(
             safe_z_mm=self.space.safe_z_mm, clearance_mm=self.space.clearance_mm, feed_mm_min=table.feeds.link
         )

@@ -305,3 +305,12 @@ def test_stock_that_cannot_be_is_refused(values: dict[str, object], message: str
     with pytest.raises(StockError) as error:
         Dexels(**arguments)  # type: ignore[arg-type]
     assert message in str(error.value)
+
+
+def test_the_lowest_strokes_are_cut_first() -> None:
+    lines = Strokes.through([(0.0, 0.0, 3.0), (1.0, 0.0, 2.0), (2.0, 0.0, 2.5), (3.0, 0.0, -1.0)])
+    arcs = np.arange(24.0).reshape(3, 8)[::-1]
+    ordered = Strokes(lines.starts_mm, lines.ends_mm, arcs).from_lowest()
+    assert ordered.starts_mm[:, 0].tolist() == [2.0, 0.0, 1.0]
+    assert ordered.ends_mm[:, 2].tolist() == [-1.0, 2.0, 2.5]
+    assert np.array_equal(ordered.arcs, arcs[::-1])

@@ -133,12 +133,16 @@ def remaining_cuts(
 
 
 def ordered_passes(
-    levels: Sequence[LevelCuts], space: Workspace, options: SemiOptions, dynamics: Dynamics
+    levels: Sequence[LevelCuts],
+    maps: Sequence[ClearGrid],
+    space: Workspace,
+    options: SemiOptions,
+    dynamics: Dynamics,
 ) -> Iterator[Pass]:
     """Passes level by level, in each the order of a tour; those reached without going up share a layer."""
     at = space.low_mm[:2]
     layer = 0
-    for one in levels:
+    for one, clear in zip(levels, maps, strict=True):
         ends = np.array([(c.points_mm[0, :2], c.points_mm[-1, :2]) for c in one.cuts])
         tour = order_pieces(
             ends,
@@ -146,7 +150,7 @@ def ordered_passes(
             link_speeds(options.feeds, dynamics),
             lift_s=lift_s(space, one.z_mm, options.feeds, dynamics),
             start_lift_s=lift_s(space, one.z_mm, options.feeds, dynamics),
-            clear=clear_grid(one.free_area, space),
+            clear=clear,
             two_way=options.direction == "both",
             search=options.search,
         )
@@ -177,8 +181,12 @@ def lift_s(space: Workspace, z_mm: float, feeds: StageFeeds, dynamics: Dynamics)
     return up + 0.5 * space.clearance_mm / (feeds.plunge / 60.0)
 
 
-def clear_grid(free_area: FreeArea, space: Workspace) -> ClearGrid:
-    """A map of a free area."""
+def clear_maps(levels: Sequence[LevelCuts], space: Workspace) -> list[ClearGrid]:
+    """Maps of the free areas of levels, in which links look for walls."""
+    return [_clear_map(one.free_area, space) for one in levels]
+
+
+def _clear_map(free_area: FreeArea, space: Workspace) -> ClearGrid:
     low, high = space.low_mm[:2] - 1.0, space.high_mm[:2] + 1.0
     x, y = (np.arange(low[i], high[i] + _MAP_PITCH_MM, _MAP_PITCH_MM) for i in (0, 1))
     gx, gy = np.meshgrid(x, y, indexing="ij")
@@ -215,13 +223,15 @@ def semi_finishing(
     options: SemiOptions,
     dynamics: Dynamics,
     levels: Sequence[LevelCuts],
+    maps: Sequence[ClearGrid],
     before: Dexels,
 ) -> ToolPath:
     """A path through the rest material.
 
     Args:
         levels: from `remaining_cuts`.
+        maps: from `clear_maps`, the same for every order of the cuts.
         before: the stock as the stage finds it.
     """
-    passes = list(ordered_passes(levels, space, options, dynamics))
+    passes = list(ordered_passes(levels, maps, space, options, dynamics))
     return linked(passes, space, tool, options.feeds, StockLinkPlanner(levels, space.top_mm, before, tool), math.inf)

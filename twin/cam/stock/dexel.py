@@ -115,9 +115,13 @@ class Dexels:
     def cut(self, tool: ToolShape, strokes: Strokes, threads: int | None = None) -> None:
         """Lower the heights to the underside of a tool moving along strokes.
 
+        The lowest strokes come first, so that most of the others find nothing left to cut: the turns of a helix, or
+        the levels of roughing.
+
         Args:
             threads: how many work, None for all cores; heights do not depend on it.
         """
+        strokes = strokes.from_lowest()
         rows = self._maxima.shape[0]
         parts = PARTS if len(strokes.starts_mm) + len(strokes.arcs) > _FEW else 1
         bounds = [rows * k // parts for k in range(parts + 1)]

@@ -60,7 +60,7 @@ class Strokes:
     @classmethod
     def _of(cls, motions: Iterable[tuple[FloatArray, FloatArray, Arc | None, Callable[[], FloatArray]]]) -> Strokes:
         lines: list[tuple[FloatArray, FloatArray]] = []
-        arcs: list[FloatArray] = []
+        arcs: list[tuple[float, ...]] = []
         for start, end, arc, corners in motions:
             level = None if arc is None else _level_arc(start, end, arc)
             if level is None:
@@ -75,14 +75,21 @@ class Strokes:
             np.array(arcs, dtype=np.float64).reshape(-1, 8),
         )
 
+    def from_lowest(self) -> Strokes:
+        """The same motions, each array in the order of its motions' lowest tips."""
+        lines = np.argsort(np.minimum(self.starts_mm[:, 2], self.ends_mm[:, 2]), kind="stable")
+        return Strokes(
+            self.starts_mm[lines], self.ends_mm[lines], self.arcs[np.argsort(self.arcs[:, 2], kind="stable")]
+        )
 
-def _level_arc(start: FloatArray, end: FloatArray, arc: Arc) -> FloatArray | None:
+
+def _level_arc(start: FloatArray, end: FloatArray, arc: Arc) -> tuple[float, ...] | None:
     """A level arc of even radius as kernels take it; None for helices, upright arcs and spirals."""
     if arc.plane != 17 or start[2] != end[2]:
         return None
-    first, last = start[:2] - arc.centre_mm[:2], end[:2] - arc.centre_mm[:2]
-    radius = float(np.hypot(*first))
-    if abs(float(np.hypot(*last)) - radius) > _EVEN_MM * max(1.0, radius):
+    (x, y, _), (start_x, start_y, z), (end_x, end_y, _) = arc.centre_mm.tolist(), start.tolist(), end.tolist()
+    radius = float(np.hypot(start_x - x, start_y - y))
+    if abs(float(np.hypot(end_x - x, end_y - y)) - radius) > _EVEN_MM * max(1.0, radius):
         return None
-    begin = math.atan2(first[1], first[0])
-    return np.array([*arc.centre_mm[:2], start[2], radius, begin, arc.sweep_rad, *end[:2]])
+    begin = math.atan2(start_y - y, start_x - x)
+    return x, y, z, radius, begin, arc.sweep_rad, end_x, end_y
