@@ -25,7 +25,7 @@ from twin.cam.surface.surface import surface_of
 from twin.geometry.mesh.slicing import mesh_sections
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 
 FLOOR_MM = -40.0
 BUCKET = 10

@@ -6,7 +6,7 @@ import importlib.util
 import tempfile
 from pathlib import Path
 
-from twin.workpiece.from_mesh import Solid, load_mesh
+from twin.workpiece.solids.from_mesh import Solid, load_mesh
 
 _SCRIPT = Path(__file__).parents[1] / "examples" / "mold" / "make_mold.py"
 

@@ -34,7 +34,7 @@ from twin.cam.slices.structuring_element import StructuringElement
 from twin.cam.surface.drop_cutter import DropCutter
 from twin.cam.surface.surface import Surface, surface_of_mesh
 from twin.tools.text import parse_tool
-from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
+from twin.workpiece.solids.from_mesh import Solid, load_mesh, mesh_slices
 
 TOOL = "ball 8"
 RADIUS_MM = 4.0

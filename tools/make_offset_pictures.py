@@ -24,7 +24,7 @@ from twin.cam.surface.surface import surface_of_mesh
 from twin.cli.show.reach_plot import write_plot
 from twin.geometry.polygons.region import Region
 from twin.geometry.polygons.shapes import cut_along, to_shape
-from twin.workpiece.from_mesh import Solid, solid
+from twin.workpiece.solids.from_mesh import Solid, solid
 from twin.workpiece.stock import SliceSet
 
 ROOT = Path(__file__).parents[1]

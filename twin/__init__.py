@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from twin.verification.settings import VerifySettings
     from twin.verification.verification import Verification, verify
     from twin.version import __version__
-    from twin.workpiece.mesh_file import write_mesh
+    from twin.workpiece.solids.mesh_file import write_mesh
     from twin.workpiece.to_mesh import SurfaceMesh
 
 __all__ = [
@@ -151,7 +151,7 @@ _HOMES = {
     "twin.verification.settings": ("VerifySettings",),
     "twin.verification.verification": ("Verification", "verify"),
     "twin.version": ("__version__",),
-    "twin.workpiece.mesh_file": ("write_mesh",),
+    "twin.workpiece.solids.mesh_file": ("write_mesh",),
     "twin.workpiece.to_mesh": ("SurfaceMesh",),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}

@@ -6,12 +6,12 @@ from typing import Annotated
 
 import typer
 
-from gcode.cli.check import check
+from gcode.cli.commands.check import check
+from gcode.cli.commands.motions import motions
+from gcode.cli.commands.plot import plot
+from gcode.cli.commands.rewrite import rewrite
+from gcode.cli.commands.stats import stats
 from gcode.cli.help import HelpCommand, HelpGroup
-from gcode.cli.motions import motions
-from gcode.cli.plot import plot
-from gcode.cli.rewrite import rewrite
-from gcode.cli.stats import stats
 
 app = typer.Typer(
     name="gcode",

@@ -11,7 +11,7 @@ import mapbox_earcut
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.workpiece.from_mesh import Solid, solid, stl_bytes
+from twin.workpiece.solids.from_mesh import Solid, solid, stl_bytes
 
 Profile = Sequence[tuple[float, float]]
 

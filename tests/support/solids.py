@@ -12,7 +12,7 @@ import numpy as np
 import trimesh
 
 from twin.arrays import FloatArray
-from twin.workpiece.from_mesh import Solid, solid
+from twin.workpiece.solids.from_mesh import Solid, solid
 
 
 def box(low: Sequence[float], high: Sequence[float]) -> FloatArray:

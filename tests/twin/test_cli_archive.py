@@ -17,7 +17,7 @@ from twin.cli import run
 from twin.record import RunHeader, WorkpiecePatch
 from twin.run.patches import joined
 from twin.sinks.mcap_sink import McapSink
-from twin.workpiece.from_mesh import load_mesh
+from twin.workpiece.solids.from_mesh import load_mesh
 
 
 def write_run(path: Path, **parameters: str) -> Path:

@@ -11,7 +11,7 @@ from support.small_parts import pocket, prism, prism_corners, write_stl
 
 from gcode.cli.entry import run as gcode
 from twin.cli import run
-from twin.workpiece.from_mesh import stl_bytes
+from twin.workpiece.solids.from_mesh import stl_bytes
 
 STEP = prism([(0, -2), (8, -2), (8, 0), (4, 0), (4, 1), (0, 1)], 0.0, 6.0)
 SCAN = ["--tool", "ball 4", "--pitch", "0.2", "--stepover", "0.4", "--arcs", "0.001"]

@@ -12,7 +12,7 @@ from support import solids
 
 from tests.support.recording import Recording
 from twin.cli import run
-from twin.workpiece.from_mesh import load_mesh
+from twin.workpiece.solids.from_mesh import load_mesh
 
 
 @pytest.fixture

@@ -14,9 +14,9 @@ from mcap.opcode import Opcode
 
 from twin.archive import schemas
 from twin.archive.container.container import Container
+from twin.archive.container.frames import DAMAGE, McapFile
 from twin.archive.container.partial import PartialFile
 from twin.archive.forces import to_ns
-from twin.archive.frames import DAMAGE, McapFile
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from mcap.records import Channel
 
+from twin.archive.container.frames import McapFile, RunFile
 from twin.archive.foreign_log import ForeignLog, LogMessage
 from twin.archive.foreign_message import MessageFields
-from twin.archive.frames import McapFile, RunFile
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 

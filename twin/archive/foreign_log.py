@@ -11,8 +11,8 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Schema
 
 from twin.archive.container.chunk import MESSAGE_FIXED
-from twin.archive.frames import DAMAGE, HEAD, Frame, McapFile, stream
-from twin.archive.integrity import FileIndex, checked_index, compare_counts
+from twin.archive.container.frames import DAMAGE, HEAD, Frame, McapFile, stream
+from twin.archive.container.integrity import FileIndex, checked_index, compare_counts
 from twin.errors import ArchiveError
 
 #: Channel, sequence, log time and publish time of a message.

@@ -7,8 +7,8 @@ from os import PathLike
 from pathlib import Path
 
 from twin.archive import run_metadata as meta
-from twin.archive.frames import DAMAGE, RunFile
-from twin.archive.integrity import FileIndex, check_data, checked_index
+from twin.archive.container.frames import DAMAGE, RunFile
+from twin.archive.container.integrity import FileIndex, check_data, checked_index
 from twin.archive.reader import Decoder
 from twin.errors import ArchiveError
 from twin.record import RunHeader, RunSummary

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from twin.archive import forces, messages, schemas
 from twin.archive import run_metadata as meta
 from twin.archive.container.chunk import MESSAGE_FIXED, MESSAGE_HEAD
+from twin.archive.container.frames import DAMAGE, HEAD, Frame, RunFile, stream
+from twin.archive.container.integrity import checked_index, compare_counts
 from twin.archive.container.unpack import ChunkError
-from twin.archive.frames import DAMAGE, HEAD, Frame, RunFile, stream
-from twin.archive.integrity import checked_index, compare_counts
 from twin.errors import ArchiveError
 from twin.record import Attachment, Record, RunHeader, RunSummary, Step
 

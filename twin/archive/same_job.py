@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from twin.archive.frames import RunFile
+from twin.archive.container.frames import RunFile
 from twin.archive.reader import Decoder
 from twin.errors import ArchiveError
 from twin.record import Attachment

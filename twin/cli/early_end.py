@@ -11,7 +11,7 @@ def warn_of_early_end(run: Path) -> None:
     Raises:
         ArchiveError: not the file of a run.
     """
-    from twin.archive.frames import RunFile
+    from twin.archive.container.frames import RunFile
     from twin.cli.console import warn
 
     with RunFile(run) as file:

@@ -14,7 +14,7 @@ from twin.cam.surface.surface import Surface
 from twin.errors import StockError
 from twin.job.job_file import Tool
 from twin.tools.shape import tool_shape
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 
 #: Faces that overhang by an angle with a sine below this count as vertical.
 _LEAN = 1e-3

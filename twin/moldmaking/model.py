@@ -12,7 +12,7 @@ from twin.cam.passes.roughing import StageFeeds
 from twin.cam.path.machining_time import Dynamics
 from twin.job.job_file import Box, Tool
 from twin.settings.table import FilePath, Key, Point, Table
-from twin.workpiece.units import Unit
+from twin.workpiece.solids.units import Unit
 
 
 class Part(Table):

@@ -28,8 +28,8 @@ from twin.moldmaking.load import shape_of
 from twin.moldmaking.model import LevelStage, MoldJob, StageTable
 from twin.planning.paths import Progress, silent
 from twin.tools.shape import ToolShape
-from twin.workpiece.from_mesh import Solid, load_mesh
-from twin.workpiece.units import TOOL_DIAMETERS, size_doubts
+from twin.workpiece.solids.from_mesh import Solid, load_mesh
+from twin.workpiece.solids.units import TOOL_DIAMETERS, size_doubts
 
 Stage: TypeAlias = Literal["rough", "semi", "finish"]
 STAGES: tuple[Stage, ...] = ("rough", "semi", "finish")

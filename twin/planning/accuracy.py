@@ -9,7 +9,7 @@ from twin.cam.slices.steep_sections import gaps_of, slopes
 from twin.planning.paths import PlanSetup
 from twin.planning.settings import PathSettings
 from twin.tools.shape import ToolShape
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 
 #: Share of the surface's area that the bound is for.
 _SHARE = 0.99

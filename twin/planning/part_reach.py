@@ -20,9 +20,9 @@ from twin.planning.settings import ReachSettings
 from twin.settings.check import changed
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
-from twin.workpiece.from_mesh import load_mesh
-from twin.workpiece.mesh_file import write_mesh
-from twin.workpiece.units import TOOL_DIAMETERS, TYPICAL_MM, size_doubts
+from twin.workpiece.solids.from_mesh import load_mesh
+from twin.workpiece.solids.mesh_file import write_mesh
+from twin.workpiece.solids.units import TOOL_DIAMETERS, TYPICAL_MM, size_doubts
 
 #: The default pitch divides the part's longest side into this many slices.
 _SLICES_ALONG = 600

@@ -37,8 +37,8 @@ from twin.geometry.polygons.region import Region
 from twin.planning.settings import PathSettings
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
-from twin.workpiece.from_mesh import Solid, load_mesh
-from twin.workpiece.units import TOOL_DIAMETERS
+from twin.workpiece.solids.from_mesh import Solid, load_mesh
+from twin.workpiece.solids.units import TOOL_DIAMETERS
 
 #: Called while work goes on: the current task, and the share of it that is done, 0 to 1.
 Progress: TypeAlias = Callable[[str, float], None]

@@ -21,7 +21,7 @@ from twin.planning.paths import PlanSetup, Progress, plan, prepare, silent
 from twin.planning.replay_job import replay_tables, write_replay_job
 from twin.planning.settings import PathSettings
 from twin.settings.check import changed
-from twin.workpiece.units import size_doubts
+from twin.workpiece.solids.units import size_doubts
 
 #: Rapid traverse rate for the machining time, mm/min.
 RAPID_MM_MIN = 10_000.0

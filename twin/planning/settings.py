@@ -7,7 +7,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import Field, Strict, model_validator
 
 from twin.settings.table import Key, Table
-from twin.workpiece.units import Unit
+from twin.workpiece.solids.units import Unit
 
 Corners: TypeAlias = Annotated[tuple[float, float, float, float], Strict(False)]
 BoxCorners: TypeAlias = Annotated[tuple[float, float, float, float, float, float], Strict(False)]

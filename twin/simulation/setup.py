@@ -21,7 +21,7 @@ from twin.simulation.recorder import Recorder
 from twin.simulation.solve import StepSolver
 from twin.simulation.tools import ToolSetup, tool_setup
 from twin.tolerance import Tolerance
-from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
+from twin.workpiece.solids.from_mesh import Solid, load_mesh, mesh_slices
 from twin.workpiece.stock import SliceSet, box_slices, cylinder_slices
 from twin.workpiece.trislice import CellSlices, PolygonSlices
 

@@ -20,7 +20,7 @@ from twin.geometry.mesh.closest import ClosestPoints
 from twin.tolerance import Tolerance
 from twin.verification.rays import Rays, beyond, cast
 from twin.verification.regions import DeviationRegion, regions_out_of_tolerance
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 from twin.workpiece.trislice import TriSlices
 
 #: Shares of the surface's area that percentiles are reported for.

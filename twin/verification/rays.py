@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.mesh.slicing import mesh_sections
 from twin.geometry.polygons.lines import LineEnds, ring_line_ends
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 from twin.workpiece.stock import plane_positions
 from twin.workpiece.store import PLANE_AXES
 from twin.workpiece.trislice import TriSlices

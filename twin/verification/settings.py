@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field, Strict, model_validator
 
 from twin.settings.table import Key, Table
-from twin.workpiece.units import Unit
+from twin.workpiece.solids.units import Unit
 
 
 class VerifySettings(Table):

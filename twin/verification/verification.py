@@ -13,8 +13,8 @@ from twin.simulation.setup import stock_length_mm
 from twin.verification.deviation import Deviation, Limits, deviation
 from twin.verification.machining import At, Begin, machined
 from twin.verification.settings import VerifySettings
-from twin.workpiece.from_mesh import Solid, load_mesh
-from twin.workpiece.units import size_doubts
+from twin.workpiece.solids.from_mesh import Solid, load_mesh
+from twin.workpiece.solids.units import size_doubts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -124,7 +124,7 @@ def _boxes() -> list[bytes]:
     import numpy as np
 
     from support.small_parts import box
-    from twin.workpiece.from_mesh import stl_bytes
+    from twin.workpiece.solids.from_mesh import stl_bytes
 
     part = box((0, 0, 0), (10, 8, 5))
     lines = ["solid box"]
@@ -142,7 +142,7 @@ def _mutated_stl(source: random.Random, data: bytes) -> bytes:
 
 
 def _load_mesh(path: Path) -> object:
-    from twin.workpiece.from_mesh import load_mesh
+    from twin.workpiece.solids.from_mesh import load_mesh
 
     return load_mesh(path)
 

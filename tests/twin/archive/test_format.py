@@ -19,7 +19,7 @@ from mcap.writer import CompressionType, Writer
 
 from twin.archive import read_run, run_writer, schemas
 from twin.archive.container.chunk import MESSAGE_HEAD
-from twin.archive.frames import RunFile, stream
+from twin.archive.container.frames import RunFile, stream
 from twin.errors import ArchiveError
 from twin.record import Step
 

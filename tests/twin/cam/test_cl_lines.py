@@ -14,7 +14,7 @@ from twin.cam.slices.structuring_element import StructuringElement
 from twin.cam.surface.drop_cutter import DropCutter
 from twin.cam.surface.surface import surface_of_mesh
 from twin.tools.text import parse_tool
-from twin.workpiece.from_mesh import Solid, solid
+from twin.workpiece.solids.from_mesh import Solid, solid
 
 
 def exact(mesh: Solid, text: str, points: FloatArray, floor: float) -> FloatArray:

@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from twin.workpiece.from_mesh import load_mesh
+from twin.workpiece.solids.from_mesh import load_mesh
 
 SCRIPT = Path(__file__).parents[3] / "examples" / "mold" / "make_mold.py"
 

@@ -17,7 +17,7 @@ from twin.geometry.polygons import convolution
 from twin.geometry.polygons.region import Region
 from twin.geometry.polygons.shapes import to_shape, to_shapes
 from twin.tools.text import parse_tool
-from twin.workpiece.from_mesh import solid
+from twin.workpiece.solids.from_mesh import solid
 from twin.workpiece.stock import SliceSet
 
 RADIUS = 3.0

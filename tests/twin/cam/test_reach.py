@@ -19,7 +19,7 @@ from twin.cam.slices.sections import SlicedPart, slice_part
 from twin.cam.slices.structuring_element import StructuringElement
 from twin.errors import ToolError
 from twin.tools.text import parse_tool
-from twin.workpiece.from_mesh import solid
+from twin.workpiece.solids.from_mesh import solid
 
 #: Segments about the axis: a polygon's area is less than its circle's by this factor.
 AROUND = 112

@@ -5,8 +5,8 @@ import pytest
 from support.small_parts import box, prism, small_torus
 
 from twin.geometry.mesh.closest import ClosestPoints
-from twin.workpiece.from_mesh import Solid
-from twin.workpiece.solid_check import winding_number
+from twin.workpiece.solids.from_mesh import Solid
+from twin.workpiece.solids.solid_check import winding_number
 
 
 def tree(part: Solid) -> ClosestPoints:

@@ -10,7 +10,7 @@ import pytest
 
 from twin.arrays import FloatArray
 from twin.moldmaking import MoldPlan, mold_from_dict
-from twin.workpiece.from_mesh import Solid, solid, stl_bytes
+from twin.workpiece.solids.from_mesh import Solid, solid, stl_bytes
 
 SIZE = (40.0, 30.0, 12.0)
 

@@ -19,7 +19,7 @@ from twin.cam.stock.strokes import Strokes
 from twin.cam.surface.surface import Surface, surface_of
 from twin.moldmaking import STAGES, MoldPlan, mold_from_dict
 from twin.tools.text import parse_tool
-from twin.workpiece.from_mesh import solid, stl_bytes
+from twin.workpiece.solids.from_mesh import solid, stl_bytes
 
 #: Distance of the points that moves are checked at, mm, and what rounding may take.
 STEP, ROUNDING = 0.05, 1e-6

@@ -12,7 +12,7 @@ import pytest
 from twin.errors import JobError, MeshError, StockError
 from twin.moldmaking import MoldPlan, load_mold, mold_from_dict
 from twin.moldmaking.checks import undercut_warnings
-from twin.workpiece.from_mesh import Solid, solid, stl_bytes
+from twin.workpiece.solids.from_mesh import Solid, solid, stl_bytes
 
 Change = Callable[[dict[str, Any]], object]
 

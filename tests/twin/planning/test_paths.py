@@ -24,7 +24,7 @@ from twin.settings.check import checked
 from twin.tools.text import parse_tool
 from twin.verification.deviation import Deviation, Limits, deviation
 from twin.verification.machining import machined
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 
 DEG = 30.0
 #: A slope of 30 degrees between two floors, 16 x 6 mm.

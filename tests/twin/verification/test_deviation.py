@@ -10,7 +10,7 @@ from support.small_parts import box, prism, prism_corners
 
 from twin.verification.deviation import Deviation, Limits, deviation
 from twin.verification.rays import beyond, cast
-from twin.workpiece.from_mesh import Solid, mesh_slices, solid
+from twin.workpiece.solids.from_mesh import Solid, mesh_slices, solid
 from twin.workpiece.trislice import CellSlices
 
 #: Rounding of vertices to 1e-5 mm.

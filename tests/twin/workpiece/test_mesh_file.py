@@ -12,8 +12,8 @@ import pytest
 import trimesh
 
 from twin.errors import MeshError
-from twin.workpiece.from_mesh import load_mesh
-from twin.workpiece.mesh_file import write_mesh
+from twin.workpiece.solids.from_mesh import load_mesh
+from twin.workpiece.solids.mesh_file import write_mesh
 from twin.workpiece.stock import box_slices, cylinder_slices
 from twin.workpiece.to_mesh import SurfaceMesh, surface_mesh
 from twin.workpiece.trislice import CellSlices

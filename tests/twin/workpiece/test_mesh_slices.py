@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from twin.geometry.mesh.slicing import mesh_sections
 from twin.geometry.polygons.region import Region, signed_area_mm2
-from twin.workpiece.from_mesh import Solid, mesh_slices, solid
+from twin.workpiece.solids.from_mesh import Solid, mesh_slices, solid
 from twin.workpiece.store import PLANE_AXES
 
 

@@ -12,8 +12,8 @@ import trimesh
 
 from twin.arrays import FloatArray
 from twin.errors import MeshError
-from twin.workpiece.from_mesh import load_mesh, solid
-from twin.workpiece.solid_check import winding_number
+from twin.workpiece.solids.from_mesh import load_mesh, solid
+from twin.workpiece.solids.solid_check import winding_number
 
 
 def cube(low: float = 0.0, high: float = 10.0) -> FloatArray:

@@ -14,8 +14,8 @@ from twin.moldmaking import mold_from_dict
 from twin.planning.part_reach import reach
 from twin.planning.planned_path import plan_paths
 from twin.simulation.setup import stock_slices
-from twin.workpiece.from_mesh import load_mesh, stl_bytes
-from twin.workpiece.units import UNITS_MM, size_doubts
+from twin.workpiece.solids.from_mesh import load_mesh, stl_bytes
+from twin.workpiece.solids.units import UNITS_MM, size_doubts
 
 SIZE = (30.0, 20.0, 10.0)
 

@@ -23,7 +23,7 @@ from twin.geometry.polygons.free_area import FreeArea, simplified, united
 from twin.geometry.polygons.outline import Area, grown, minus
 from twin.geometry.polygons.shapes import to_shape
 from twin.tools.shape import ToolShape
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 
 #: How far borders may be moved away from the part by chords and left-out vertices.
 CHORD_MM = 0.005

@@ -17,7 +17,7 @@ from twin.cam.path.toolpath import ToolPath
 from twin.geometry.polygons.free_area import FreeArea, borders
 from twin.geometry.polygons.outline import Area, box_area, grown
 from twin.tools.shape import ToolShape
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 
 #: Height of the part's surface under a tip, at plan points of shape (n, 2): `DropCutter.drop`.
 Drop = Callable[[FloatArray], FloatArray]

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.cam.slices.sections import flat_triangles
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 
 
 def slabs_mm(mesh: Solid, axis: int, planes_mm: FloatArray, pitch_mm: float) -> FloatArray:

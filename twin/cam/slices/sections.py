@@ -14,7 +14,7 @@ from twin.arrays import FloatArray
 from twin.geometry.mesh.slicing import mesh_sections
 from twin.geometry.polygons.region import Region
 from twin.geometry.threads import run_all
-from twin.workpiece.from_mesh import Solid, load_mesh, mesh_slices
+from twin.workpiece.solids.from_mesh import Solid, load_mesh, mesh_slices
 from twin.workpiece.stock import SliceSet
 from twin.workpiece.store import PLANE_AXES
 

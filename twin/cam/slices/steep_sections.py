@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray, places_in_runs
 from twin.cam.slices.sections import Sections, SlicedPart, cut_sections, slanted_triangles
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 
 #: Distances along the surface that are allowed, in pitches; a pitch is divided by no more than the second.
 _ALONG, _MOST = 3.0, 16.0

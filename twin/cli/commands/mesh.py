@@ -27,7 +27,7 @@ def mesh(
     From an archive: the last surface recorded. From a job: the job is replayed, and the mesh is made from the slices.
     """
     from twin.cli.console import results
-    from twin.workpiece.mesh_file import check_mesh_path, write_mesh
+    from twin.workpiece.solids.mesh_file import check_mesh_path, write_mesh
 
     check_mesh_path(out, force=force)
     made = _from_run(source) if source.suffix.lower() == _ARCHIVE else _from_job(source)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from twin.cli.common import Force, Json, Quiet, Recording
-from twin.workpiece.units import Unit
+from twin.workpiece.solids.units import Unit
 
 if TYPE_CHECKING:
     from twin.moldmaking.result import Mold

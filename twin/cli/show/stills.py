@@ -14,7 +14,7 @@ from twin.cam.reach.uncut_mesh import uncut_mesh
 from twin.planning.part_reach import PartReach, tool_name
 from twin.sinks.rerun.still import Colors, Still, StillLines, StillMesh, StillPoints
 from twin.verification.deviation import Deviation
-from twin.workpiece.from_mesh import Solid
+from twin.workpiece.solids.from_mesh import Solid
 
 _COLORS: dict[MoveKind, tuple[int, int, int]] = {
     MoveKind.RAPID: (150, 150, 160),

@@ -11,9 +11,9 @@ from scipy.sparse.csgraph import connected_components
 
 from twin.arrays import FloatArray
 from twin.errors import MeshError
-from twin.workpiece.mesh_defects import defects
-from twin.workpiece.mesh_defects import point as text_of
-from twin.workpiece.weld import Mesh
+from twin.workpiece.solids.mesh_defects import defects
+from twin.workpiece.solids.mesh_defects import point as text_of
+from twin.workpiece.solids.weld import Mesh
 
 
 def check_closed(name: str, vertices_mm: FloatArray, mesh: Mesh) -> None:

@@ -11,8 +11,8 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, ChunkIndex, MetadataIndex, Statistics
 
 from twin.archive.container.container import MAGIC
+from twin.archive.container.frames import DAMAGE, FOOTER_BYTES, HEAD, Frame, Head, McapFile, stream
 from twin.archive.container.unpack import MOST_RATIO
-from twin.archive.frames import DAMAGE, FOOTER_BYTES, HEAD, Frame, Head, McapFile, stream
 
 #: A file whose chunks have more than this together, unpacked, must not have more than `MOST_RATIO` times its own size.
 FREE_TOTAL_BYTES = 1 << 26

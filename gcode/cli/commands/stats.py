@@ -43,6 +43,6 @@ def stats(
 
         say_json(json.dumps({"file": str(file), **stats_object(found)}, indent=2))
     else:
-        from gcode.cli.stats_tables import print_stats
+        from gcode.cli.commands.stats_tables import print_stats
 
         print_stats(results(), file.name, found)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from gcode.whole_file import whole_file
 from twin.errors import MeshError
-from twin.workpiece.from_mesh import stl_bytes, threemf_bytes
+from twin.workpiece.solids.from_mesh import stl_bytes, threemf_bytes
 from twin.workpiece.to_mesh import SurfaceMesh
 
 _WRITERS: dict[str, Callable[[ArrayLike, ArrayLike], bytes]] = {".stl": stl_bytes, ".3mf": threemf_bytes}

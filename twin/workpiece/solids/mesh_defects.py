@@ -10,7 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from twin.arrays import FloatArray
-from twin.workpiece.weld import WELD_MM, Mesh
+from twin.workpiece.solids.weld import WELD_MM, Mesh
 
 #: Number of positions, or of triangles, that a message names.
 _NAMED = 3

@@ -11,7 +11,7 @@ from gcode.cli import exit_codes
 from gcode.cli.machine_options import Setup, with_machine
 
 if TYPE_CHECKING:
-    from gcode.cli.findings import Findings
+    from gcode.cli.commands.findings import Findings
 
 
 @with_machine
@@ -30,8 +30,8 @@ def check(
     setup: Setup,
 ) -> None:
     """Find errors in programs, as many as possible in one run, each with its line and column."""
+    from gcode.cli.commands.findings import findings
     from gcode.cli.console import fail
-    from gcode.cli.findings import findings
 
     codes = {exit_codes.OK}
     for file in files:

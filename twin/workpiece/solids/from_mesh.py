@@ -15,12 +15,12 @@ from twin.errors import MeshError
 from twin.geometry.mesh.slicing import MeshEdges, mesh_sections, weld
 from twin.geometry.polygons.region import Region
 from twin.geometry.threads import run_all
-from twin.workpiece.solid_check import check_closed, check_orientation
-from twin.workpiece.stl_file import stl_corners
+from twin.workpiece.solids.solid_check import check_closed, check_orientation
+from twin.workpiece.solids.stl_file import stl_corners
+from twin.workpiece.solids.units import TYPICAL_MM, UNITS_MM, unit_of
+from twin.workpiece.solids.weld import Mesh, welded
 from twin.workpiece.stock import SliceSet, even_pitch, plane_counts, plane_positions
 from twin.workpiece.store import PLANE_AXES
-from twin.workpiece.units import TYPICAL_MM, UNITS_MM, unit_of
-from twin.workpiece.weld import Mesh, welded
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
@@ -109,7 +109,7 @@ def solid(corners_mm: ArrayLike, name: str) -> Solid:
 
     Vertices are rounded to 1e-5 mm first, so that triangles whose corners differ by rounding meet. Triangles with two
     equal corners after that enclose nothing and are dropped. Seams that are open by no more than
-    `twin.workpiece.weld.WELD_MM` are closed, which the solid's notes state; nothing else is mended.
+    `twin.workpiece.solids.weld.WELD_MM` are closed, which the solid's notes state; nothing else is mended.
 
     Args:
         corners_mm: shape (m, 3, 3), the corners of each triangle, counter-clockwise seen from outside.
