@@ -116,7 +116,7 @@ def _usual(program: Program, names: list[str]) -> tuple[str, str]:
         if name in names:
             return name, f"its name ends in {suffix}"
     for name in names:
-        if re.search(rf"[(;][^\n]*\b{name}\b", program.head, re.IGNORECASE):
+        if re.search(rf"[(;][^\n]*(?<![^\W_]){name}(?![^\W_])", program.head, re.IGNORECASE):
             return name, f"a comment names {name}"
     return names[0], f"nothing in it speaks against {names[0]}"
 

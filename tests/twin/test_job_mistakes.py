@@ -183,6 +183,12 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
         "export act)",
     ),
     ({"cuttings": {}}, "cuttings: unknown key; did you mean cutting?"),
+    ({"machine__tool_change_s": 1e300}, "machine.tool_change_s = 1e+300: expected at most 1e+09 in magnitude"),
+    ({"machine__home_mm": [0, -1e12, 0]}, "machine.home_mm[1] = -1000000000000.0: expected at most 1e+09 in magnitude"),
+    (
+        {"simulation__axial_step_mm": 50.0},
+        "simulation.axial_step_mm = 50.0: expected at most 10, half the flute length of tool 1",
+    ),
     (
         {"stock": 3},
         "stock = 3: expected a table with keys box_mm, cylinder_mm, stl, unit, stl_scale, offset_mm, wcs (the material "

@@ -20,6 +20,17 @@ _LEAST_STEP_PITCHES = 0.01
 _MOST_CELLS = 2000
 #: Most edge elements of a tool times force samples per revolution.
 _MOST_MAP = 4_000_000
+#: An axial step that is not given is never too coarse, mm.
+_DEFAULT_AXIAL_MM = 0.1
+#: Largest number: squares and products of several of them are still numbers.
+_LARGEST = 1e9
+
+
+def numbers_sensible(facts: Facts, _folder: Path) -> Iterator[Problem]:
+    """A number beyond any quantity of a machine would end in infinite results."""
+    for location, value in facts.numbers():
+        if abs(value) > _LARGEST:
+            yield wrong(location, value, f"at most {_LARGEST:g} in magnitude")
 
 
 def _stock_extent_mm(facts: Facts) -> Sequence[float] | None:
@@ -84,6 +95,19 @@ def edges_fit(facts: Facts, _folder: Path) -> Iterator[Problem]:
         yield wrong(("simulation", "axial_step_mm"), axial, expected)
 
 
+def edges_divided(facts: Facts, _folder: Path) -> Iterator[Problem]:
+    """An edge of one element would be engaged as a whole or not at all."""
+    axial = facts.get("simulation", "axial_step_mm")
+    flutes = [(f, tool.number) for tool in tools_of(facts) if (f := tool.get("flute_length_mm")) is not None]
+    if axial is None or not flutes:
+        return
+    shortest, number = min(flutes, key=lambda flute: flute[0])
+    if axial > max(0.5 * shortest, _DEFAULT_AXIAL_MM):
+        whose = f"tool {number}" if number is not None else "a tool"
+        expected = f"at most {0.5 * shortest:g}, half the flute length of {whose}"
+        yield wrong(("simulation", "axial_step_mm"), axial, expected)
+
+
 def rapids_end(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """Rapids come to an end."""
     rate = facts.get("machine", "rapid_mm_min")
@@ -94,4 +118,4 @@ def rapids_end(facts: Facts, _folder: Path) -> Iterator[Problem]:
             yield wrong(("machine", "axis_rapid_mm_min", index), rate, f"at least {_LEAST_RAPID_MM_MIN:g}")
 
 
-LIMITS = (rapids_end, slices_fit, drawing_fits, steps_countable, edges_fit)
+LIMITS = (numbers_sensible, rapids_end, slices_fit, drawing_fits, steps_countable, edges_fit, edges_divided)

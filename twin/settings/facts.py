@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, get_args
 
 from pydantic import BaseModel
@@ -54,6 +54,18 @@ class Facts:
                 return False
             value = value[key]
         return True
+
+    def numbers(self) -> Iterator[tuple[Location, float]]:
+        """Every number in the file that is not in a mistake, with its location."""
+        todo: list[tuple[Location, Any]] = [((), self._data)]
+        while todo:
+            location, value = todo.pop()
+            if isinstance(value, Mapping):
+                todo += [((*location, key), inner) for key, inner in reversed(list(value.items()))]
+            elif isinstance(value, Sequence) and not isinstance(value, str):
+                todo += [((*location, i), inner) for i, inner in reversed(list(enumerate(value)))]
+            elif isinstance(value, (int, float)) and not isinstance(value, bool) and not self.wrong(*location):
+                yield location, value
 
     def wrong(self, *location: str | int) -> bool:
         """Whether a mistake is at a location or above it."""
