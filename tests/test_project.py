@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import twin.jit
-from twin.cli.app import app
+from twin.cli.app import whole_app
 from twin.job import JobFile
 
 ROOT = Path(__file__).parents[1]
@@ -187,7 +187,7 @@ def test_the_job_files_page_has_every_key() -> None:
 
 def test_the_command_lines_page_has_every_command_and_option() -> None:
     page = (ROOT / "docs" / "command-line.md").read_text()
-    commands = [c.callback.__name__ for c in app.registered_commands if c.callback is not None and not c.hidden]
+    commands = [c.callback.__name__ for c in whole_app().registered_commands if c.callback is not None and not c.hidden]
     assert commands == re.findall(r"^\| `twin (\w+)", page, flags=re.M)
     options = set(re.findall(r'"(--[a-z-]+)"', (ROOT / "twin" / "cli" / "commands" / "replay.py").read_text()))
     assert options

@@ -12,7 +12,7 @@ import typer
 from pydantic import BaseModel
 
 from twin.cli import run
-from twin.cli.app import app
+from twin.cli.app import COMMANDS, app_for, whole_app
 from twin.moldmaking.model import MoldFile
 from twin.planning.settings import PathSettings, ReachSettings
 from twin.settings.keys import bare, option_names
@@ -33,8 +33,22 @@ FORMER = {
 
 
 def options(command: str) -> set[str]:
-    found = typer.main.get_command(app).commands[command]  # type: ignore[attr-defined]
+    found = typer.main.get_command(whole_app()).commands[command]  # type: ignore[attr-defined]
     return {name for parameter in found.params for name in (*parameter.opts, *parameter.secondary_opts)}
+
+
+def test_the_program_s_help_has_the_first_line_of_every_command() -> None:
+    whole = typer.main.get_command(whole_app()).commands  # type: ignore[attr-defined]
+    assert {name: c.help.split("\n\n")[0] for name, c in whole.items() if not c.hidden} == COMMANDS
+    listed = typer.main.get_command(app_for(["--help"])).commands  # type: ignore[attr-defined]
+    assert {name: c.help for name, c in listed.items()} == COMMANDS
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"), [(["info", "x.mcap"], ["info"]), (["machinable"], [*COMMANDS, "machinable"])]
+)
+def test_a_command_line_loads_its_own_command(arguments: list[str], names: list[str]) -> None:
+    assert list(typer.main.get_command(app_for(arguments)).commands) == names  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(

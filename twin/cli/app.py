@@ -2,51 +2,82 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from importlib import import_module
+from typing import Annotated, Any
 
 import typer
 
-from twin.cli.commands.compare import compare
-from twin.cli.commands.export import export
-from twin.cli.commands.identify import identify
-from twin.cli.commands.info import info
-from twin.cli.commands.mesh import mesh
-from twin.cli.commands.mold import mold
-from twin.cli.commands.paths import paths
-from twin.cli.commands.reach import reach
-from twin.cli.commands.replay import replay
-from twin.cli.commands.schema import schema
-from twin.cli.commands.verify import verify
-from twin.cli.commands.view import view
 from twin.cli.help import HelpCommand, HelpGroup
 
-app = typer.Typer(
-    name="twin",
-    cls=HelpGroup,
-    help="A machining digital twin: replays NC programs, removes material, predicts cutting forces.",
-    epilog="Exit codes: 0 done, 1 an error, explained in the message, 2 wrong use of the command line, 3 a collision "
-    "under --strict, 4 out of tolerance, 130 Ctrl-C, 141 closed pipe.",
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+#: Options that print help.
+_HELP_OPTIONS = ("-h", "--help")
+#: The commands, and the line of each in the program's help, which is printed without importing them.
+COMMANDS: Mapping[str, str] = {
+    "replay": "Replay the NC program of a job: remove material, compute cutting forces, archive the run.",
+    "view": "Show an archived run, or an archived comparison, in the rerun viewer.",
+    "info": "Print the contents of an archive: summary of the run, program, stock, tools, messages, attached files.",
+    "export": "Write every force sample of a run as CSV or Parquet.",
+    "compare": "Compare a measured force log with a run: errors, harmonics, report.",
+    "identify": "Find cutting coefficients from test cuts, with their errors.",
+    "mesh": "Write the machined part as a triangle mesh.",
+    "reach": "Find the material that tools cannot reach on a part: position, volume, thickness.",
+    "paths": "Make an NC program from a part's STL file, and a job file that replays it.",
+    "verify": "Replay a job without forces and compare the machined surface with the design: "
+    "gouges, excess material, positions.",
+    "mold": "Machine a mold from its STL file: roughing, semi-finishing of rest material, finishing; "
+    "one program per stage.",
+    "schema": "Print the JSON Schema of a job file or settings file, for editors that complete and check TOML.",
+}
 
-for command in (
-    replay,
-    view,
-    info,
-    export,
-    compare,
-    identify,
-    mesh,
-    reach,
-    paths,
-    verify,
-    mold,
-    schema,
-):
-    app.command(cls=HelpCommand)(command)
-# the former name of `twin reach`
-app.command("machinable", hidden=True, cls=HelpCommand)(reach)
+
+def app_for(arguments: Sequence[str]) -> typer.Typer:
+    """The program with what a command line needs: one command, or the lines of all of them for the program's help."""
+    first = next(iter(arguments), "")
+    if first in COMMANDS:
+        return _program([first])
+    return _listing() if first in _HELP_OPTIONS else whole_app()
+
+
+def whole_app() -> typer.Typer:
+    """The program with all its commands."""
+    app = _program(COMMANDS)
+    # the former name of `twin reach`
+    app.command("machinable", hidden=True, cls=HelpCommand)(_command("reach"))
+    return app
+
+
+def _program(names: Iterable[str]) -> typer.Typer:
+    app = _empty()
+    for name in names:
+        app.command(cls=HelpCommand)(_command(name))
+    return app
+
+
+def _command(name: str) -> Callable[..., Any]:
+    command: Callable[..., Any] = getattr(import_module(f"twin.cli.commands.{name}"), name)
+    return command
+
+
+def _listing() -> typer.Typer:
+    app = _empty()
+    for name, line in COMMANDS.items():
+        app.command(name, help=line, cls=HelpCommand)(lambda: None)
+    return app
+
+
+def _empty() -> typer.Typer:
+    app = typer.Typer(
+        name="twin",
+        cls=HelpGroup,
+        help="A machining digital twin: replays NC programs, removes material, predicts cutting forces.",
+        epilog="Exit codes: 0 done, 1 an error, explained in the message, 2 wrong use of the command line, 3 a "
+        "collision under --strict, 4 out of tolerance, 130 Ctrl-C, 141 closed pipe.",
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": list(_HELP_OPTIONS)},
+    )
+    app.callback()(_options)
+    return app
 
 
 def _print_version(wanted: bool) -> None:
@@ -62,7 +93,6 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def _options(
     version: Annotated[
         bool,

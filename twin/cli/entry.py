@@ -24,11 +24,11 @@ def run(arguments: Sequence[str]) -> int:
     Returns:
         the exit code, see `twin.cli.exit_codes`.
     """
-    from twin.cli.app import app
+    from twin.cli.app import app_for
     from twin.cli.console import fail
 
     try:
-        code = carry_out(app, arguments, "twin")
+        code = carry_out(app_for(arguments), arguments, "twin")
         sys.stdout.flush()
     except OSError as error:
         return failed_output(error)

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from typer.core import TyperCommand, TyperGroup, TyperOption
 
 from gcode.cli.streams import closed_pipe_ends
-from twin.cli.options import type_metavar
+from twin.cli.metavars import type_metavar
 
 _Parameter = TypeVar("_Parameter")
 

@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from rich.markup import escape
 
+from twin.cli.metavars import type_metavar
 from twin.errors import SettingsError
 from twin.settings.check import checked
 from twin.settings.keys import bare, default_text, key_of, option_names, without_unit
@@ -20,7 +21,6 @@ from twin.settings.toml_file import read_toml
 
 Command = Callable[..., None]
 _Model = TypeVar("_Model", bound=BaseModel)
-_METAVARS: dict[type, str] = {bool: "", int: "N", float: "NUMBER", str: "TEXT", PurePath: "FILE"}
 
 
 def options_from(
@@ -142,13 +142,6 @@ def _metavar(name: str, field: FieldInfo, annotation: Any) -> str | None:
     items = get_args(annotation) or (annotation,)
     unit = without_unit(name)[1]
     return " ".join(unit or type_metavar(item) or "TEXT" for item in items) if items != (bool,) else ""
-
-
-def type_metavar(annotation: Any) -> str | None:
-    """Placeholder of a type in the help: empty for a flag, None for a type without one."""
-    kinds = (kind for kind in _METAVARS if isinstance(annotation, type) and issubclass(annotation, kind))
-    kind = next(kinds, None)
-    return None if kind is None else _METAVARS[kind]
 
 
 def options_table(model: type[BaseModel]) -> str:
