@@ -230,7 +230,9 @@ class Simulation(Table):
         default=1.0, gt=0.0, le=360.0, description="spindle angle between force samples; must divide 360"
     )
     axial_step_mm: float = Field(
-        default=0.1, gt=0.0, description="height of a cutting edge element along the tool axis"
+        default=0.1,
+        gt=0.0,
+        description="height of a cutting edge element along the tool axis; at most half the shortest flute length",
     )
     engagement: Literal["majority", "any"] = Field(
         default="majority",
