@@ -24,6 +24,8 @@ from twin.geometry.polygons.region import Region
 
 #: Cells are squares of this many slice pitches.
 CELL_PITCHES = 5
+#: Edges of a cell that has many are merged where they stay this near, as a part of a slice pitch.
+MERGE_PITCHES = 0.0025
 _FREE_LISTS = 40
 _T = TypeVar("_T", bound=np.generic)
 
@@ -126,8 +128,9 @@ class CellFamily:
         self.ensure(strips.first, strips.first + strips.planes)
         removed = np.zeros(strips.planes)
         cursor = np.zeros(3, dtype=np.int64)
+        merge_mm = MERGE_PITCHES / CELL_PITCHES * self.grid.size if apply else -1.0
         while True:
-            answer = cut_planes(self.store, self.grid, strips, self._scratch, cursor, apply, removed)
+            answer = cut_planes(self.store, self.grid, strips, self._scratch, cursor, merge_mm, removed)
             if answer == layout.DONE:
                 break
             self._make_room(answer)

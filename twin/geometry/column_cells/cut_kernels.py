@@ -47,6 +47,7 @@ from twin.geometry.column_cells.strip_kernels import (
     tile_of,
 )
 from twin.geometry.column_cells.strips import Strips
+from twin.geometry.column_cells.thin_kernels import MANY_EDGES, thinned
 from twin.jit import helper, njit
 
 #: Entries of a cursor: where a kernel that ran out of room goes on.
@@ -73,14 +74,15 @@ def cut_planes(
     strips: Strips,
     scratch: Scratch,
     cursor: NDArray[np.int64],
-    apply: bool,
+    merge_mm: float,
     removed: FloatArray,
 ) -> int:
     """Subtract strips from planes, or only measure what they would remove.
 
     Args:
         cursor: shape (3,): plane, column, tile to go on from; 0 at the first call, kept between calls.
-        apply: False leaves the planes as they are.
+        merge_mm: how far edges of a cell with many may be moved to have fewer, see
+            `twin.geometry.column_cells.thin_kernels`; negative to leave the planes as they are.
         removed: shape (planes,), area taken from each plane, added to.
 
     Returns:
@@ -91,6 +93,7 @@ def cut_planes(
     offsets, nodes, fresh = strips.offsets, strips.nodes, strips.fresh
     segments, toggles_lo, toggles_hi = scratch.segments, scratch.toggles_lo, scratch.toggles_hi
     work, out = scratch.work, scratch.out
+    apply = merge_mm >= 0.0
     # 64-bit numbers throughout: helpers are compiled once for each type of their arguments
     while cursor[PLANE] < len(offsets) - 1:
         node, end = offsets[cursor[PLANE]], offsets[cursor[PLANE] + 1] - 1
@@ -119,6 +122,8 @@ def cut_planes(
                         count = cut_edges(pool, begin, size, pieces, segments, toggles_lo, toggles_hi, out)
                     if count < 0:
                         answer = SCRATCH_FULL
+                    elif apply and count > MANY_EDGES:
+                        count = thinned(out, count, box.top, merge_mm)
                 area = _area(cell, box, cells, pool)
                 if apply and answer == DONE:
                     t = table[plane, column]
