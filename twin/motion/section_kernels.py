@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry.column_cells.strips import Strips
+from twin.geometry.column_cells.strips import Strips, Tops
 from twin.jit import helper, njit
 from twin.motion.swept_kernels import BodyShape, Motion, disc_upper, highest, lowest, reach, side, upside_down
 
@@ -65,13 +65,15 @@ class _Node(NamedTuple):
 
 
 @njit
-def section_nodes(body: BodyShape, motion: Motion, planes: Planes, strips: Strips) -> int:
+def section_nodes(body: BodyShape, motion: Motion, planes: Planes, tops: Tops, strips: Strips) -> int:
     """Strips of a swept body on consecutive planes.
 
     Intervals are halved until no chord of lo or hi deviates from its curve by more than the chord tolerance, evenly in
     the angle whose cosine is u, which follows a round section's vertical ends.
 
     Args:
+        tops: heights of the material on these planes, or none; vertical planes only. Where there is no material in the
+            way, no chords are refined and nodes are not fresh.
         strips: its arrays are filled.
 
     Returns:
@@ -83,10 +85,10 @@ def section_nodes(body: BodyShape, motion: Motion, planes: Planes, strips: Strip
     offsets[0] = 0
     for i in range(planes.planes):
         w = planes.first_w + i * planes.pitch
-        if i > 0 and _same_as_before(body, motion, planes, w):
+        if i > 0 and len(tops.heights) == 0 and _same_as_before(body, motion, planes, w):
             written = _repeat_nodes(nodes, fresh, offsets[i - 1], written)
         else:
-            written = _plane_nodes(body, motion, planes, w, stack, nodes, fresh, written)
+            written = _plane_nodes(body, motion, planes, tops, i, stack, strips, written)
         if written < 0:
             return -1
         offsets[i + 1] = written
@@ -121,13 +123,16 @@ def _plane_nodes(
     body: BodyShape,
     motion: Motion,
     planes: Planes,
-    w: float,
+    tops: Tops,
+    i: int,
     stack: FloatArray,
-    nodes: FloatArray,
-    fresh: NDArray[np.bool_],
+    strips: Strips,
     written: int,
 ) -> int:
-    """Append one plane's nodes; returns the number then, or -1 when they do not fit."""
+    """Append the nodes of plane ``i``; returns the number then, or -1 when they do not fit."""
+    nodes, fresh = strips.nodes, strips.fresh
+    known = len(tops.heights) > 0
+    w = planes.first_w + i * planes.pitch
     low, high = _range_of_u(body, planes.horizontal, motion, w)
     half = 0.5 * (high - low)
     if not half > _NO_SECTION * body.meridian.radius:
@@ -137,13 +142,18 @@ def _plane_nodes(
     flat_v = _flat_bottom(body, motion, planes.horizontal)
     left = _node_at(body, motion, planes, section, 0.0)
     written = _append_node(left, nodes, fresh, written)
+    clear_before, all_clear = known, known
     for piece in range(_START_INTERVALS):
         depth = 0
         _push(stack, depth, _node_at(body, motion, planes, section, math.pi * (piece + 1) / _START_INTERVALS))
         while depth >= 0:
             right = _node_of(stack, depth)
             middle = _node_at(body, motion, planes, section, 0.5 * (left.phi + right.phi))
-            if depth >= _MAX_DEPTH or _is_straight(left, middle, right, planes.chord, flat_v):
+            clear = known and _is_clear(tops, i, left, middle, right, _SAME_SECTION * body.meridian.radius)
+            if clear or depth >= _MAX_DEPTH or _is_straight(left, middle, right, planes.chord, flat_v):
+                if clear and clear_before and written > first and left.lo <= left.hi:
+                    fresh[written - 1] = False
+                clear_before, all_clear = clear, all_clear and clear
                 written = _append_node(right, nodes, fresh, written)
                 left = right
                 depth -= 1
@@ -152,7 +162,30 @@ def _plane_nodes(
                 _push(stack, depth, middle)
         if written < 0:
             return -1
-    return written if written - first >= 2 else first
+    if clear_before and written > first and left.lo <= left.hi:
+        fresh[written - 1] = False
+    return written if written - first >= 2 and not all_clear else first
+
+
+@helper
+def _is_clear(tops: Tops, i: int, left: _Node, middle: _Node, right: _Node, same: float) -> bool:
+    """Whether there is no material between two nodes on plane ``i`` above the strip's lower side, which is convex.
+
+    That lies above the lines through the middle and either end, prolonged.
+    """
+    du0, du1 = middle.u - left.u, right.u - middle.u
+    if du0 <= 0.0 or du1 <= 0.0 or not (left.lo <= left.hi and middle.lo <= middle.hi and right.lo <= right.hi):
+        return False
+    at_left = middle.lo - (right.lo - middle.lo) / du1 * du0
+    at_right = middle.lo + (middle.lo - left.lo) / du0 * du1
+    bound = min(middle.lo, at_left, at_right) + same
+    heights = tops.heights
+    first = max(0, int(math.floor((left.u - tops.u_low) / tops.size)))
+    last = min(heights.shape[1] - 1, int(math.floor((right.u - tops.u_low) / tops.size)))
+    for column in range(first, last + 1):
+        if heights[i, column] > bound:
+            return False
+    return True
 
 
 @helper

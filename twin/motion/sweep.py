@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.geometry.column_cells.strips import Strips
+from twin.geometry.column_cells.strips import NO_TOPS, Strips, Tops
 from twin.motion.section_kernels import Planes, section_nodes
 from twin.motion.swept_kernels import BodyShape, Motion, Sweeps, outside_sweeps
 from twin.tools.shape import ToolShape
@@ -103,6 +103,7 @@ class Sweep:
         *,
         start_is_cut: bool = False,
         top_mm: float = math.inf,
+        tops: Tops = NO_TOPS,
     ) -> Strips:
         """Sections by the planes of one slice family that the sweep may touch.
 
@@ -113,13 +114,12 @@ class Sweep:
             start_is_cut: the volume at the start has been cut already, so that only the part that the motion adds
                 need be right; the rest is marked as not fresh.
             top_mm: height above which there is no material.
+            tops: heights of the material on the planes of `planes_met`, where they are known: sections are refined
+                only where they meet it, and planes without any have none.
         """
-        low, high = self.bounds_mm
-        first = max(0, math.ceil((low[axis] - low_mm) / pitch_mm - 0.5))
-        last = min(count - 1, math.floor((high[axis] - low_mm) / pitch_mm - 0.5))
-        if last < first:
+        first, planes = self.planes_met(axis, low_mm, pitch_mm, count)
+        if planes <= 0:
             return _EMPTY
-        planes = last - first + 1
         cut = Planes(
             horizontal=axis == 2,
             first_w=float(low_mm + (first + 0.5) * pitch_mm),
@@ -133,10 +133,17 @@ class Sweep:
         room = 128 * planes + 2048
         while True:
             strips = Strips(first, offsets, np.empty((room, 3)), np.empty(room, dtype=np.bool_))
-            written = section_nodes(self.body.shape, motion, cut, strips)
+            written = section_nodes(self.body.shape, motion, cut, tops, strips)
             if written >= 0:
                 return Strips(first, offsets, strips.nodes[:written], strips.fresh[:written])
             room *= 2
+
+    def planes_met(self, axis: int, low_mm: float, pitch_mm: float, count: int) -> tuple[int, int]:
+        """The first plane of a slice family that the sweep may touch, and how many, 0 or less for none; see `strips`."""
+        low, high = self.bounds_mm
+        first = max(0, math.ceil((low[axis] - low_mm) / pitch_mm - 0.5))
+        last = min(count - 1, math.floor((high[axis] - low_mm) / pitch_mm - 0.5))
+        return first, last - first + 1
 
     def _motion(self, axis: int) -> Motion:
         """The tip's motion in the order (normal, u, v) of a slice family."""

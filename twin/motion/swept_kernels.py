@@ -399,4 +399,4 @@ def _in_box(motion: Motion, radius: float, x: float, y: float, z: float) -> bool
 @helper
 def _inside(body: BodyShape, motion: Motion, depth: float, x: float, y: float, z: float) -> bool:
     """Whether a point lies deeper than ``depth`` above the lower surface of a sweep, and below its top."""
-    return z < highest(body, motion, x, y) and z > lowest(body, motion, x, y) + depth
+    return z > lowest(body, motion, x, y) + depth and z < highest(body, motion, x, y)

@@ -13,11 +13,14 @@ from typing import Self
 import numpy as np
 
 from twin.arrays import FloatArray
+from twin.geometry.column_cells.strips import NO_TOPS, Tops
 from twin.motion.sweep import Sweep
 from twin.workpiece.trislice import TriSlices
 
 #: Families in the order in which threads take them: those across the tool axis cost most.
 _ORDER = (0, 1, 2)
+#: Sweeps no longer than this many pitches are cut only where there is material in their way.
+_SHORT_PITCHES = 3.0
 
 
 class Removal:
@@ -71,8 +74,19 @@ class Removal:
         low, pitch = float(piece.low_mm[axis]), float(piece.pitch_mm[axis])
         count = levels if axis == 2 else piece.count(axis)
         top = float(piece.low_mm[2] + (levels + 0.5) * piece.pitch_mm[2])  # where the next plane is, which is empty
-        strips = sweep.strips(axis, low, pitch, count, self._chord_mm, start_is_cut=follows, top_mm=top)
+        tops = self._tops(axis, sweep, count) if follows and axis != 2 else NO_TOPS
+        strips = sweep.strips(axis, low, pitch, count, self._chord_mm, start_is_cut=follows, top_mm=top, tops=tops)
         return float(np.sum(piece.cut(axis, strips, apply=apply)) * pitch)
+
+    def _tops(self, axis: int, sweep: Sweep, count: int) -> Tops:
+        """Heights of the material about a short sweep: most of what it sweeps has been cut by those before it."""
+        piece = self.workpiece
+        pitch = float(piece.pitch_mm[axis])
+        if sweep.length_mm > _SHORT_PITCHES * pitch:
+            return NO_TOPS
+        first, planes = sweep.planes_met(axis, float(piece.low_mm[axis]), pitch, count)
+        low, high = sweep.bounds_mm
+        return piece.tops(axis, first, planes, (float(low[1 - axis]), float(high[1 - axis])), float(low[2]))
 
     def close(self) -> None:
         """Stop the threads."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.cells import CELL_PITCHES, CellFamily
 from twin.geometry.column_cells.query_kernels import Planes
-from twin.geometry.column_cells.strips import Strips
+from twin.geometry.column_cells.strips import NO_TOPS, Strips, Tops
 from twin.geometry.polygons import clip
 from twin.geometry.polygons.lines import LineEnds, ring_line_ends
 from twin.geometry.polygons.region import Region
@@ -67,6 +67,17 @@ class TriSlices(ABC):
         Args:
             apply: False measures only.
         """
+
+    def tops(self, axis: int, first: int, planes: int, range_u_mm: tuple[float, float], base_mm: float) -> Tops:  # noqa: ARG002
+        """Heights of the material in columns of consecutive vertical planes, as far as the store knows them.
+
+        Args:
+            axis: 0 or 1.
+            first, planes: the first plane, and how many.
+            range_u_mm: along the planes.
+            base_mm: material lower than this need not be found.
+        """
+        return NO_TOPS
 
     @abstractmethod
     def areas_mm2(self, axis: int) -> FloatArray:
@@ -134,6 +145,10 @@ class CellSlices(TriSlices):
     def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
         """See `TriSlices.cut`."""
         return self._families[axis].cut(strips, apply=apply)
+
+    def tops(self, axis: int, first: int, planes: int, range_u_mm: tuple[float, float], base_mm: float) -> Tops:
+        """See `TriSlices.tops`."""
+        return self._families[axis].tops(first, planes, range_u_mm, base_mm)
 
     def areas_mm2(self, axis: int) -> FloatArray:
         """See `TriSlices.areas_mm2`."""

@@ -16,8 +16,8 @@ from twin.geometry.column_cells.cut_kernels import cut_planes
 from twin.geometry.column_cells.edge_kernels import EDGE_COLUMNS
 from twin.geometry.column_cells.fill_kernels import fill_plane
 from twin.geometry.column_cells.line_kernels import cell_lines
-from twin.geometry.column_cells.query_kernels import Planes, contains, plane_trapezoids
-from twin.geometry.column_cells.strips import Strips
+from twin.geometry.column_cells.query_kernels import Planes, contains, plane_trapezoids, top_heights
+from twin.geometry.column_cells.strips import NO_TOPS, Strips, Tops
 from twin.geometry.polygons import lines
 from twin.geometry.polygons.clip import union_convex
 from twin.geometry.polygons.region import Region
@@ -137,6 +137,17 @@ class CellFamily:
         if apply:
             self.area_mm2[strips.first : strips.first + strips.planes] -= removed
         return removed
+
+    def tops(self, first: int, planes: int, range_u_mm: tuple[float, float], base_mm: float) -> Tops:
+        """Heights of the material above ``base_mm`` on consecutive planes in the columns of a range of u."""
+        grid = self.grid
+        begin, end = (math.floor((u - grid.u_low) / grid.size) for u in range_u_mm)
+        begin, end = max(0, begin), min(grid.columns, end + 1)
+        if end <= begin or planes <= 0:
+            return NO_TOPS
+        heights = np.empty((planes, end - begin))
+        top_heights(self.store, grid, first, begin, base_mm, heights)
+        return Tops(heights, grid.u_low + begin * grid.size, grid.size)
 
     def line_ends(
         self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]

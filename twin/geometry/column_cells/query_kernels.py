@@ -67,6 +67,33 @@ def contains(
 
 
 @njit
+def top_heights(store: CellStore, grid: Grid, first: int, first_column: int, base: float, heights: FloatArray) -> None:
+    """Height of the highest material in columns of consecutive planes.
+
+    Args:
+        first, first_column: the plane and the column of the first entry of ``heights``.
+        base: material below this v need not be found.
+        heights: shape (planes, columns), filled: -inf where there is none, inf where a plane is not built.
+    """
+    lowest_tile = max(0, int(math.floor((base - grid.v_low) / grid.size)))
+    for i in range(len(heights)):
+        for j in range(heights.shape[1]):
+            table = store.table[first + i, first_column + j]
+            heights[i, j] = -math.inf if table != 0 else math.inf
+            for tile in range(grid.tiles - 1 if table != 0 else -1, lowest_tile - 1, -1):
+                cell = cell_at(store.page, table, tile)
+                state = store.cells[cell, STATE]
+                if state == FULL:
+                    heights[i, j] = grid.v_low + (tile + 1) * grid.size
+                    break
+                if state == PARTIAL:
+                    begin, end = store.cells[cell, START], store.cells[cell, START] + store.cells[cell, SIZE]
+                    for e in range(begin, end):
+                        heights[i, j] = max(heights[i, j], store.pool[e, 1], store.pool[e, 3])
+                    break
+
+
+@njit
 def plane_trapezoids(tables: NDArray[np.int64], grid: Grid, store: CellStore, out: FloatArray) -> int:
     """Material of a plane, given by its columns' tables, as trapezoids with vertical sides.
 

@@ -10,6 +10,23 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 
 
+class Tops(NamedTuple):
+    """Heights of the material in columns of consecutive vertical planes.
+
+    Attributes:
+        heights: shape (planes, columns), v of the highest material; -inf without any. Beyond them there is none.
+        u_low, size: where the first column begins, and the width of each, mm.
+    """
+
+    heights: FloatArray
+    u_low: float
+    size: float
+
+
+#: Heights that are not known.
+NO_TOPS = Tops(np.empty((0, 0)), 0.0, 1.0)
+
+
 class Strips(NamedTuple):
     """One strip per plane; a plane that the body misses has no nodes.
 
