@@ -23,6 +23,8 @@ from twin.workpiece.store import PLANE_AXES
 
 #: Areas that are taken for rounding: as a number, and as a share of the stock's plan.
 LEAST_MM2, LEAST_SHARE = 1e-6, 1e-9
+#: Edges of a cell that has many are merged where they stay this near, in pitches: a hundredth of a chord's deviation.
+MERGE_PITCHES = 5e-5
 
 
 class TriSlices(ABC):
@@ -138,9 +140,9 @@ class CellSlices(TriSlices):
         self._families = []
         for axis, (u, v) in enumerate(PLANE_AXES):
             low, high = slices.low_mm, slices.high_mm
-            cell = CELL_PITCHES * float(max(slices.pitch_mm[u], slices.pitch_mm[v]))
+            pitch = float(max(slices.pitch_mm[u], slices.pitch_mm[v]))
             corner = (float(low[u]), float(low[v])), (float(high[u]), float(high[v]))
-            self._families.append(CellFamily(slices.regions[axis], *corner, cell))
+            self._families.append(CellFamily(slices.regions[axis], *corner, CELL_PITCHES * pitch, MERGE_PITCHES * pitch))
 
     def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
         """See `TriSlices.cut`."""

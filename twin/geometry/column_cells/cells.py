@@ -24,8 +24,6 @@ from twin.geometry.polygons.region import Region
 
 #: Cells are squares of this many slice pitches.
 CELL_PITCHES = 5
-#: Edges of a cell that has many are merged where they stay this near, as a part of a slice pitch.
-MERGE_PITCHES = 0.0025
 _FREE_LISTS = 40
 _T = TypeVar("_T", bound=np.generic)
 
@@ -40,6 +38,8 @@ class CellFamily:
         regions: material on each plane at the start.
         low_uv_mm, high_uv_mm: corners of the stock's box in the planes.
         cell_mm: size of a cell.
+        merge_mm: edges of a cell that has many are merged where they stay this near; 0 for none. Less than a chord's
+            deviation.
     """
 
     def __init__(
@@ -48,6 +48,7 @@ class CellFamily:
         low_uv_mm: tuple[float, float],
         high_uv_mm: tuple[float, float],
         cell_mm: float,
+        merge_mm: float = 0.0,
     ) -> None:
         columns, tiles = (
             max(1, math.ceil((high - low) / cell_mm * (1.0 - 1e-12)))
@@ -57,6 +58,7 @@ class CellFamily:
         self.area_mm2 = np.array([r.area_mm2 for r in regions], dtype=np.float64)
         self.store = _empty_store(len(regions), columns, math.ceil(tiles / layout.PAGE_TILES))
         self._scratch = _scratch(1024)
+        self._merge_mm = merge_mm
         self._regions = regions
         self._alike = Counter(map(id, regions))
         self._templates: dict[int, NDArray[np.int64]] = {}
@@ -128,7 +130,7 @@ class CellFamily:
         self.ensure(strips.first, strips.first + strips.planes)
         removed = np.zeros(strips.planes)
         cursor = np.zeros(3, dtype=np.int64)
-        merge_mm = MERGE_PITCHES / CELL_PITCHES * self.grid.size if apply else -1.0
+        merge_mm = self._merge_mm if apply else -1.0
         while True:
             answer = cut_planes(self.store, self.grid, strips, self._scratch, cursor, merge_mm, removed)
             if answer == layout.DONE:

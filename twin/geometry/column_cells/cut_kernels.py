@@ -82,7 +82,7 @@ def cut_planes(
     Args:
         cursor: shape (3,): plane, column, tile to go on from; 0 at the first call, kept between calls.
         merge_mm: how far edges of a cell with many may be moved to have fewer, see
-            `twin.geometry.column_cells.thin_kernels`; negative to leave the planes as they are.
+            `twin.geometry.column_cells.thin_kernels`; 0 for none; negative to leave the planes as they are.
         removed: shape (planes,), area taken from each plane, added to.
 
     Returns:
@@ -122,7 +122,7 @@ def cut_planes(
                         count = cut_edges(pool, begin, size, pieces, segments, toggles_lo, toggles_hi, out)
                     if count < 0:
                         answer = SCRATCH_FULL
-                    elif apply and count > MANY_EDGES:
+                    elif merge_mm > 0.0 and count > MANY_EDGES:
                         count = thinned(out, count, box.top, merge_mm)
                 area = _area(cell, box, cells, pool)
                 if apply and answer == DONE:
