@@ -11,6 +11,7 @@ STAGES = (
     "surface",
     "replay",
     "removal",
+    "retraced",
     "archive",
     "gcode",
     "offset",

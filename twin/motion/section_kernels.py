@@ -182,10 +182,10 @@ def _is_clear(tops: Tops, i: int, left: _Node, middle: _Node, right: _Node, same
     heights = tops.heights
     first = max(0, int(math.floor((left.u - tops.u_low) / tops.size)))
     last = min(heights.shape[1] - 1, int(math.floor((right.u - tops.u_low) / tops.size)))
+    highest_there = -math.inf
     for column in range(first, last + 1):
-        if heights[i, column] > bound:
-            return False
-    return True
+        highest_there = max(highest_there, heights[i, column])
+    return highest_there <= bound
 
 
 @helper

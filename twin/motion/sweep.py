@@ -139,7 +139,7 @@ class Sweep:
             room *= 2
 
     def planes_met(self, axis: int, low_mm: float, pitch_mm: float, count: int) -> tuple[int, int]:
-        """The first plane of a slice family that the sweep may touch, and how many, 0 or less for none; see `strips`."""
+        """The first plane of a family that the sweep may touch, and how many, 0 or less for none; see `strips`."""
         low, high = self.bounds_mm
         first = max(0, math.ceil((low[axis] - low_mm) / pitch_mm - 0.5))
         last = min(count - 1, math.floor((high[axis] - low_mm) / pitch_mm - 0.5))

@@ -141,8 +141,9 @@ class CellSlices(TriSlices):
         for axis, (u, v) in enumerate(PLANE_AXES):
             low, high = slices.low_mm, slices.high_mm
             pitch = float(max(slices.pitch_mm[u], slices.pitch_mm[v]))
+            cell = CELL_PITCHES * pitch
             corner = (float(low[u]), float(low[v])), (float(high[u]), float(high[v]))
-            self._families.append(CellFamily(slices.regions[axis], *corner, CELL_PITCHES * pitch, MERGE_PITCHES * pitch))
+            self._families.append(CellFamily(slices.regions[axis], *corner, cell, MERGE_PITCHES * pitch))
 
     def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
         """See `TriSlices.cut`."""
@@ -170,6 +171,12 @@ class CellSlices(TriSlices):
     def bytes_in_use(self) -> int:
         """Memory that the slices take, without what is kept ready for more."""
         return sum(family.bytes_in_use for family in self._families)
+
+    @property
+    def edges_per_cell(self) -> tuple[float, int]:
+        """Mean and largest number of edges of the cells that have any; 0 without any."""
+        counts = np.concatenate([family.edge_counts for family in self._families])
+        return (float(counts.mean()), int(counts.max())) if len(counts) else (0.0, 0)
 
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
         """See `TriSlices.prepare`: planes are built when first needed; those that are not built hold nothing."""

@@ -77,6 +77,12 @@ class CellFamily:
             + planes * store.table[0].nbytes
         )
 
+    @property
+    def edge_counts(self) -> NDArray[np.int64]:
+        """Number of edges of each cell that has any."""
+        sizes = self.store.cells[: self.store.used[0], layout.SIZE]
+        return sizes[sizes > 0].astype(np.int64)
+
     def built(self, k: int) -> bool:
         """Whether a plane has cells."""
         return bool(self.store.table[k, 0])

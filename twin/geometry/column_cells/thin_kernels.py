@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.edge_kernels import EDGE_COLUMNS, Edge, edge_of, put_edge
-from twin.jit import helper
+from twin.jit import helper, njit
 
 #: A cell with more edges than this gets fewer, where it can.
 MANY_EDGES = 48
@@ -30,7 +30,7 @@ class _Cone(NamedTuple):
     high: float
 
 
-@helper
+@njit
 def thinned(edges: FloatArray, count: int, top: float, merge_mm: float) -> int:
     """Merge edges of a cell in place.
 
