@@ -3,8 +3,8 @@
     python -m benchmarks.retraced [--turns 5]
 
 Ball of 8 mm and flat tool of 10 mm on a radius of 4 mm, slices and steps at 0.1 mm, without forces: a helix of arcs
-that goes 0.1 mm down a turn, and a spiral of blocks of 0.04 mm that grows by 0.063 mm a turn. The straight cut is as long
-as the helix and 1 mm deep. CPU time of one thread; edges are those of the cells that hold any.
+that goes 0.1 mm down a turn, and a spiral of blocks of 0.04 mm that grows by 0.063 mm a turn. The straight cut is as
+long as the helix and 1 mm deep. CPU time of one thread; edges are those of the cells that hold any.
 """
 
 from __future__ import annotations
