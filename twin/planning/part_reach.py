@@ -26,6 +26,8 @@ from twin.workpiece.solids.units import TOOL_DIAMETERS, TYPICAL_MM, size_doubts
 
 #: The default pitch divides the part's longest side into this many slices.
 _SLICES_ALONG = 600
+#: Slices across the largest tool where the part is smaller than it, and the most there may be.
+_SLICES_ACROSS, _MOST_SLICES_ACROSS = 500, 8000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -130,7 +132,7 @@ def reach(
     diameters = [2.0 * shape.nominal_radius_mm for shape in shapes.values()]
     mesh = load_mesh(part, unit=settings.unit, like_mm=TOOL_DIAMETERS * max(diameters) if diameters else TYPICAL_MM)
     longest = float((mesh.vertices_mm.max(axis=0) - mesh.vertices_mm.min(axis=0)).max())
-    sliced = slice_part(mesh, longest / _SLICES_ALONG if settings.pitch_mm is None else settings.pitch_mm)
+    sliced = slice_part(mesh, slice_pitch_mm(settings, longest, max(diameters, default=0.0)))
     tools: dict[str, Reach] = {}
     tasks = len(shapes) + settings.largest
     for text, shape in shapes.items():
@@ -141,6 +143,22 @@ def reach(
     radius = largest_ball_mm(sliced, thin_mm=settings.thin_mm, threads=threads) if settings.largest else None
     diameter = None if radius is None else 2.0 * radius
     return PartReach(settings=settings, part=sliced, tools=MappingProxyType(tools), largest_ball_mm=diameter)
+
+
+def slice_pitch_mm(settings: ReachSettings, longest_mm: float, diameter_mm: float) -> float:
+    """The pitch of a part with this longest side; the largest tool spans a bounded number of slices.
+
+    Raises:
+        ToolError: a given pitch is too small for the tool.
+    """
+    if settings.pitch_mm is None:
+        return max(longest_mm / _SLICES_ALONG, diameter_mm / _SLICES_ACROSS)
+    if settings.pitch_mm * _MOST_SLICES_ACROSS < diameter_mm:
+        least = diameter_mm / _MOST_SLICES_ACROSS
+        raise ToolError(
+            f"pitch_mm = {settings.pitch_mm:g}: expected at least {least:.3g} for a tool of {diameter_mm:g} mm"
+        )
+    return settings.pitch_mm
 
 
 def _element(shape: ToolShape, settings: ReachSettings) -> StructuringElement:

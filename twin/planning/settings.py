@@ -130,7 +130,7 @@ class ReachSettings(Table):
         tuple[str, ...], Strict(False), Key(options=("--tool",), metavar="TOOL", unset="none, if `largest` is set")
     ] = Field(default=(), description="tools: 'ball 8', 'flat 10', 'bull 12 r2'")
     unit: Unit = Field(default="mm", description="unit of the STL file; auto: the one in which its size is plausible")
-    pitch_mm: Annotated[float | None, Key(unset="longest side / 600")] = Field(
+    pitch_mm: Annotated[float | None, Key(unset="longest side / 600, or largest tool / 500 if more")] = Field(
         default=None, gt=0.0, description="largest distance between the part's slices"
     )
     thin_mm: Annotated[float | None, Key(unset="the resolution of the slices")] = Field(
