@@ -28,10 +28,14 @@ def test_it_opens_whole(run: twin.Run) -> None:
     assert len(run.mesh().triangles) > 0
 
 
-def test_its_job_replays_to_the_same_digest(run: twin.Run, tmp_path: Path) -> None:
+def test_its_job_replays_to_the_same_forces(run: twin.Run, tmp_path: Path) -> None:
     for attachment in run.header.attachments:
         (tmp_path / Path(attachment.name).name).write_bytes(attachment.data)
-    assert twin.replay(tmp_path / "job.toml").summary.digest == DIGEST
+    now = twin.replay(tmp_path / "job.toml")
+    for name, values in run.forces.items():
+        assert np.array_equal(values, now.forces[name]), name
+    # tiny edges of cells have since been merged
+    assert now.summary.removed_volume_mm3 == pytest.approx(run.summary.removed_volume_mm3, rel=1e-7)
 
 
 def test_its_table_measured_is_what_a_comparison_uses(run: twin.Run, tmp_path: Path) -> None:
