@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+import gcode.cli
 from gcode.dialects import dialect_named
 from gcode.errors import GcodeError
 from gcode.events import PLANE_AXES, ArcMotion, Event, LinearMotion, Motion, Point
@@ -27,6 +28,18 @@ def run_text(text: str, dialect: str = "fanuc", **settings: Any) -> list[Event]:
 def run() -> Run:
     """All events of a text: ``run(text, dialect, **settings)``."""
     return run_text
+
+
+@pytest.fixture
+def cli(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
+    """Exit code, standard output and standard error of a command."""
+
+    def call(*arguments: object) -> tuple[int, str, str]:
+        code = gcode.cli.run([str(a) for a in arguments])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return call
 
 
 @pytest.fixture

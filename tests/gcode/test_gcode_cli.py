@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 from rich.cells import cell_len
 
-from gcode.cli import run
 from gcode.cli.app import app
 from gcode.cli.machine_options import DialectName, ProgramDialect
 from gcode.dialects import AUTO, DIALECTS
@@ -41,18 +40,6 @@ def nc(tmp_path: Path) -> Path:
     path = tmp_path / "part.nc"
     path.write_text(PROGRAM)
     return path
-
-
-@pytest.fixture
-def cli(capsys: pytest.CaptureFixture[str]) -> Cli:
-    """Exit code, standard output and standard error of a command."""
-
-    def call(*arguments: object) -> tuple[int, str, str]:
-        code = run([str(a) for a in arguments])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return call
 
 
 def test_motions_are_one_object_a_line(cli: Cli, nc: Path) -> None:

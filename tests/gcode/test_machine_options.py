@@ -8,21 +8,7 @@ from typing import Any
 
 import pytest
 
-from gcode.cli import run
-
 Cli = Any
-
-
-@pytest.fixture
-def cli(capsys: pytest.CaptureFixture[str]) -> Cli:
-    """Exit code, standard output and standard error of a command."""
-
-    def call(*arguments: object) -> tuple[int, str, str]:
-        code = run([str(a) for a in arguments])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return call
 
 
 def test_the_unit_of_tables_is_the_machines(cli: Cli, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.measured.axes import AxisMap, guess_map
+from twin.measured.axes import guess_map
 from twin.measured.table import Table
 from twin.measured.text.marks import Marks, other
 from twin.measured.units import find_unit, split_unit
@@ -61,7 +61,7 @@ def scaled(table: Table, above: Sequence[str], delimiter: str | None, marks: Mar
         return table
     stated = {m["what"].lower(): m["unit"] for line in above if (m := _UNIT.search(line))}
     forces = guess_map(table.names)
-    axes = {name: term for term, name in _axes(forces)}
+    axes = {} if forces is None else {name: axis for axis, name in forces.entries}
     units, values, notes = list(table.units), table.values.copy(), list(table.notes)
     for index, name in enumerate(table.names):
         what = "force" if name in axes else "torque" if _TORQUE.match(name) else ""
@@ -75,11 +75,6 @@ def scaled(table: Table, above: Sequence[str], delimiter: str | None, marks: Mar
             notes.append(f"column {name!r} in counts: {count:g} per {units[index]}, as in the header")
     names = tuple(split_unit(n)[0] if units[i] != table.units[i] else n for i, n in enumerate(table.names))
     return replace(table, names=names, units=tuple(units), values=values, notes=tuple(notes))
-
-
-def _axes(forces: AxisMap | None) -> list[tuple[str, str]]:
-    """Axis and column of a map that was guessed."""
-    return [] if forces is None else [(axis, name) for axis, name in forces.entries]
 
 
 def _scale(line: str, delimiter: str | None, marks: Marks) -> _Scale | None:
