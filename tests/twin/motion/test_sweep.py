@@ -9,6 +9,7 @@ import pytest
 import shapely
 
 from twin.arrays import FloatArray
+from twin.geometry.column_cells.strips import Tops
 from twin.motion.sweep import Body, Sweep, SweptVolume
 from twin.tools.shape import ToolShape, tool_shape
 
@@ -121,3 +122,20 @@ def test_the_part_that_a_motion_adds_next_to_the_flat_bottom_of_its_start_is_cut
     lo_start = np.interp(u, start.nodes[:, 0], start.nodes[:, 1])
     assert np.max(lo_start - lo) > 0.4  # the motion adds this much below the section at its start
     assert np.max(np.minimum(lo_start, lo_added) - lo) < 0.01
+
+
+def test_sections_are_refined_only_where_there_is_material_in_the_way() -> None:
+    sweep = Sweep(Body.of(tool_shape("ball", 3.0, 8.0)), np.array([0.0, 0.0, 0.0]), np.array([0.05, 0.02, -0.01]))
+    planes = (-5.0, 0.5, 20, 0.001)
+    plain = sweep.strips(0, *planes)
+    _, count = sweep.planes_met(0, *planes[:3])
+    for height, nodes in ((10.0, len(plain.nodes)), (-1.0, 0)):
+        tops = Tops(np.full((count, 8), height), -4.0, 1.0)
+        assert len(sweep.strips(0, *planes, tops=tops).nodes) == nodes
+    heights = np.full((count, 8), -1.0)
+    heights[:, 5] = 10.0
+    found = sweep.strips(0, *planes, tops=Tops(heights, -4.0, 1.0))
+    assert 0 < len(found.nodes) < len(plain.nodes)
+    # over the material the strips are as without that knowledge
+    kept = {tuple(node) for node in found.nodes.tolist()}
+    assert {tuple(node) for node in plain.nodes.tolist() if 1.0 <= node[0] <= 2.0} <= kept
