@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).parents[1]
 #: Files of the packages that are not Python, and must be in both.
-DATA = (".rbl", ".proto", ".j2", ".typed")
+DATA = (".rbl", ".proto", ".j2", ".toml", ".typed")
 #: What must not be in a wheel, by first folder.
 PRIVATE = {"benchmarks", "docs", "examples", "recordings", "tests", "tools"}
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         CutsError,
         IdentifyError,
         JobError,
+        MaterialError,
         MeasuredError,
         MeshError,
         ReplayError,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     )
     from twin.identification.result import Identified
     from twin.job import Job, job_from_dict, load_job
+    from twin.materials import Material, find_material, load_materials
     from twin.measured.log import ForceLog
     from twin.measured.settings import CompareSettings, LogReading
     from twin.moldmaking import Mold, MoldJob, load_mold, mold
@@ -79,6 +81,8 @@ __all__ = [
     "Job",
     "JobError",
     "LogReading",
+    "Material",
+    "MaterialError",
     "MeasuredError",
     "MeshError",
     "Mold",
@@ -107,9 +111,11 @@ __all__ = [
     "WorkpiecePatch",
     "__version__",
     "compare",
+    "find_material",
     "identify",
     "job_from_dict",
     "load_job",
+    "load_materials",
     "load_mold",
     "mold",
     "open_run",
@@ -132,11 +138,21 @@ _HOMES = {
     ),
     "twin.comparison.comparison": ("Comparison",),
     "twin.errors": (
-        *("ArchiveError", "CollisionError", "CompareError", "CutsError", "IdentifyError", "JobError", "MeasuredError"),
-        *("MeshError", "ReplayError", "SettingsError", "StockError", "ToolError", "ToolPathError", "TwinError"),
+        *("ArchiveError", "CollisionError", "CompareError", "CutsError", "IdentifyError", "JobError", "MaterialError"),
+        *(
+            "MeasuredError",
+            "MeshError",
+            "ReplayError",
+            "SettingsError",
+            "StockError",
+            "ToolError",
+            "ToolPathError",
+            "TwinError",
+        ),
     ),
     "twin.identification.result": ("Identified",),
     "twin.job": ("Job", "job_from_dict", "load_job"),
+    "twin.materials": ("Material", "find_material", "load_materials"),
     "twin.measured.log": ("ForceLog",),
     "twin.measured.settings": ("CompareSettings", "LogReading"),
     "twin.moldmaking": ("Mold", "MoldJob", "load_mold", "mold"),

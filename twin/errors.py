@@ -67,3 +67,7 @@ class CutsError(JobError):
 
 class IdentifyError(TwinError):
     """Test cuts from which no coefficients can be identified."""
+
+
+class MaterialError(TwinError):
+    """A material that the table of cutting coefficients does not have; the message has the nearest names."""

@@ -12,7 +12,11 @@ from twin.jit import njit
 
 
 class Coefficients(NamedTuple):
-    """Cutting coefficients: per chip area (c), N/mm2, and per edge length (e), N/mm."""
+    """Cutting coefficients: per chip area (c), N/mm2, and per edge length (e), N/mm.
+
+    The exponents mt, mr, ma are 0 in the linear law; under Kienzle's law the coefficients per chip area are those of a
+    chip of 1 mm.
+    """
 
     Ktc: float
     Kte: float
@@ -20,6 +24,9 @@ class Coefficients(NamedTuple):
     Kre: float
     Kac: float
     Kae: float
+    mt: float = 0.0
+    mr: float = 0.0
+    ma: float = 0.0
 
 
 class EdgeForce(NamedTuple):
@@ -36,10 +43,18 @@ def edge_force(k: Coefficients, chip: float, db: float) -> EdgeForce:
 
         dF_t = (Ktc h + Kte) db    dF_r = (Krc h + Kre) db    dF_a = (Kac h + Kae) db
 
+    With exponents (O. Kienzle: kc = kc1.1 h^-mc) the chip h is h^(1 - mt), h^(1 - mr), h^(1 - ma), h in mm.
+
     Args:
         chip: uncut chip thickness h, mm.
         db: length of the piece along the meridian, mm: dz / sin(kappa) where that is finite.
     """
+    if k.mt != 0.0 or k.mr != 0.0 or k.ma != 0.0:
+        return EdgeForce(
+            (k.Ktc * chip ** (1.0 - k.mt) + k.Kte) * db,
+            (k.Krc * chip ** (1.0 - k.mr) + k.Kre) * db,
+            (k.Kac * chip ** (1.0 - k.ma) + k.Kae) * db,
+        )
     return EdgeForce((k.Ktc * chip + k.Kte) * db, (k.Krc * chip + k.Kre) * db, (k.Kac * chip + k.Kae) * db)
 
 

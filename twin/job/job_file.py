@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import ConfigDict, Field, Strict
 
 from twin.errors import JobError
+from twin.materials import find_material
 from twin.measured.settings import CompareSettings, LogFile
 from twin.settings.check import checked
 from twin.settings.force_on import ForceOn
@@ -21,6 +22,9 @@ from twin.settings.table import FilePath, Key, Point, Table
 #: The keys of a stock, of which one is given.
 STOCKS = ("box_mm", "cylinder_mm", "stl")
 SixNumbers: TypeAlias = Annotated[tuple[float, float, float, float, float, float], Strict(False)]
+Interval: TypeAlias = Annotated[tuple[float, float], Strict(False)]
+_Coefficient: TypeAlias = Annotated[float, Key(unset="required, or that of the material")]
+_Exponent: TypeAlias = Annotated[float | None, Key(unset="0")]
 MCode: TypeAlias = Annotated[int, Strict(False), Field(ge=0)]
 Rows: TypeAlias = Annotated[tuple[Annotated[tuple[float, ...], Strict(False)], ...], Strict(False)]
 RapidPath: TypeAlias = Literal["independent", "straight"]
@@ -149,21 +153,50 @@ class RigidPart(Table):
     length_mm: float = Field(gt=0.0, description="length along the tool axis, mm")
 
 
+def _required_without_material(schema: dict[str, Any]) -> None:
+    """JSON Schema of the coefficients: all of them, or a material."""
+    schema["anyOf"] = [{"required": ["material"]}, {"required": schema.pop("required")}]
+
+
 class Cutting(Table):
     """Cutting coefficients of the tri-slice paper's eq. 2: per chip area (c) and per edge length (e)."""
 
-    Ktc: float = Field(ge=0.0, description="tangential, per chip area, N/mm2")
-    Kte: float = Field(description="tangential, per edge length, N/mm")
-    Krc: float = Field(description="radial, per chip area, N/mm2")
-    Kre: float = Field(description="radial, per edge length, N/mm")
-    Kac: float = Field(description="axial, per chip area, N/mm2")
-    Kae: float = Field(description="axial, per edge length, N/mm")
+    model_config = ConfigDict(json_schema_extra=_required_without_material)
+
+    material: Annotated[str | None, Key(unset="none")] = Field(
+        default=None,
+        min_length=1,
+        description="name of a material in the table of twin materials; its values stand for the keys not given here",
+    )
+    law: Annotated[Literal["linear-edge", "kienzle"] | None, Key(unset="linear-edge")] = Field(
+        default=None, description="force law: linear-edge, or kienzle with the exponents mt, mr, ma"
+    )
+    Ktc: _Coefficient = Field(ge=0.0, description="tangential, per chip area, N/mm2; under kienzle at a chip of 1 mm")
+    Kte: _Coefficient = Field(description="tangential, per edge length, N/mm")
+    Krc: _Coefficient = Field(description="radial, per chip area, N/mm2; under kienzle at a chip of 1 mm")
+    Kre: _Coefficient = Field(description="radial, per edge length, N/mm")
+    Kac: _Coefficient = Field(description="axial, per chip area, N/mm2; under kienzle at a chip of 1 mm")
+    Kae: _Coefficient = Field(description="axial, per edge length, N/mm")
+    mt: _Exponent = Field(default=None, ge=0.0, lt=1.0, description="kienzle only: exponent of the tangential force")
+    mr: _Exponent = Field(default=None, ge=0.0, lt=1.0, description="kienzle only: exponent of the radial force")
+    ma: _Exponent = Field(default=None, ge=0.0, lt=1.0, description="kienzle only: exponent of the axial force")
     source: Annotated[str | None, Key(unset="a warning")] = Field(
         default=None, min_length=1, pattern=r"\S", description="source of the coefficients, e.g. a paper or a test"
     )
     convention: Literal["meridian"] = Field(
         default="meridian",
         description="edge length that Kte, Kre and Kae refer to: along the tool's profile (meridian), not the helix",
+    )
+    chip_range_mm: Annotated[Interval | None, Key(unset="not checked")] = Field(
+        default=None,
+        description="uncut chip thickness that the coefficients hold for, [lowest, highest], mm; runs outside it warn",
+    )
+    speed_range_m_min: Annotated[Interval | None, Key(unset="not checked")] = Field(
+        default=None,
+        description="cutting speed that the coefficients hold for, [lowest, highest], m/min; runs outside it warn",
+    )
+    caution: Annotated[str | None, Key(unset="none")] = Field(
+        default=None, min_length=1, description="text printed with the warnings of every run that uses the coefficients"
     )
     standard_errors: Annotated[SixNumbers | None, Key(unset="none")] = Field(
         default=None, description="standard errors of Ktc, Kte, Krc, Kre, Kac, Kae; archived with the run, not used"
@@ -327,6 +360,18 @@ class Job(JobFile):
         """
         simulation = checked(Simulation, {**self.simulation.model_dump(), **values}, "simulation", JobError)
         return self.model_copy(update={"simulation": simulation})
+
+    def with_material(self, name: str) -> Job:
+        """The same job with the cutting coefficients of a material for all tools, in place of its own.
+
+        Args:
+            name: see `twin.find_material`.
+
+        Raises:
+            MaterialError: there is none; the message has the nearest names.
+        """
+        cutting = Cutting.model_validate(find_material(name).cutting())
+        return self.without_forces().model_copy(update={"cutting": cutting})
 
     def with_program(self, **values: Any) -> Job:
         """The same job with other values of its ``[program]`` table, e.g. ``tool=1``.

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from twin.errors import JobError
 from twin.job.job_file import Job, JobFile
+from twin.job.material import with_materials
 from twin.job.rules import RULES
 from twin.settings.facts import Facts
 from twin.settings.problems import Problem, problems_of
@@ -51,7 +52,7 @@ def job_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") ->
 
 
 def _job(data: Mapping[str, Any], path: Path, text: str) -> Job:
-    problems: list[Problem] = []
+    data, problems = with_materials(data)
     try:
         JobFile.model_validate(data)
     except ValidationError as error:

@@ -11,7 +11,7 @@ from twin.job.job_file import RAPIDS, STOCKS
 from twin.job.limits import LIMITS
 from twin.job.tool_rules import TOOL_RULES
 from twin.settings.facts import Facts
-from twin.settings.problems import Problem, wrong
+from twin.settings.problems import Location, Problem, key_path, wrong
 
 Rule: TypeAlias = Callable[[Facts, Path], Iterator[Problem]]
 
@@ -130,6 +130,20 @@ def angle_divides_turn(facts: Facts, _folder: Path) -> Iterator[Problem]:
         yield wrong(("simulation", "angle_step_deg"), angle, expected)
 
 
+def laws_are_sound(facts: Facts, _folder: Path) -> Iterator[Problem]:
+    """Exponents belong to Kienzle's law; ranges of validity have an extent."""
+    tables: list[Location] = [("cutting",), *(tool.at("cutting") for tool in tools_of(facts))]
+    for table in tables:
+        if facts.get(*table, "law") != "kienzle":
+            for key in ("mt", "mr", "ma"):
+                if facts.get(*table, key):
+                    yield wrong((*table, key), facts.get(*table, key), f'0 without {key_path(table)}.law = "kienzle"')
+        for key in ("chip_range_mm", "speed_range_m_min"):
+            interval = facts.get(*table, key)
+            if interval is not None and not 0.0 <= interval[0] <= interval[1]:
+                yield wrong((*table, key), interval, "[lowest, highest], the lowest at least 0")
+
+
 def files_are_there(facts: Facts, folder: Path) -> Iterator[Problem]:
     """The program and the mesh exist."""
     for location, what in ((("program", "file"), "an NC program"), (("stock", "stl"), "an STL file")):
@@ -163,6 +177,7 @@ RULES: tuple[Rule, ...] = (
     tools_are_sound,
     pitch_below_tools,
     angle_divides_turn,
+    laws_are_sound,
     *LIMITS,
     outputs_named_rightly,
 )

@@ -73,7 +73,7 @@ def keys_table(model: type[BaseModel], without: type[BaseModel] = BaseModel) -> 
 
 def _rows(model: type[BaseModel]) -> Iterator[str]:
     for name, field in model.model_fields.items():
-        default = "required" if field.is_required() else default_text(field) or ""
+        default = key_of(field).unset or "required" if field.is_required() else default_text(field) or ""
         if default and not field.is_required() and default != key_of(field).unset:
             default = f"`{default}`"
         yield f"| `{name}` | {default} | {_meaning(field)} |".replace("|  |", "| |")

@@ -106,6 +106,9 @@ def _coefficients(c: Cutting) -> CuttingCoefficients:
         Kre=c.Kre,
         Kac=c.Kac,
         Kae=c.Kae,
+        mt=c.mt or 0.0,
+        mr=c.mr or 0.0,
+        ma=c.ma or 0.0,
         source=c.source or "not stated",
         convention=c.convention,
     )
