@@ -10,11 +10,11 @@ from rich.console import Console
 from support.fake_replay import FakeReplay
 from support.slot_run import SlotRun
 
-from twin.cli.show import words
+from twin import number_format as words
 from twin.cli.show.progress import LineProgress, NoProgress, progress
 from twin.cli.show.summary import Timing, mean_force, print_summary
-from twin.cli.show.watch import MOST_COLLISIONS, Watch
 from twin.record import Collision, NcEvent, RunSummary
+from twin.run.watch import MOST_COLLISIONS, Watch
 
 HEADER = SlotRun().header()
 SUMMARY = FakeReplay().summary(complete=True)

@@ -74,7 +74,7 @@ def _state(info: RunInfo, *, verified: bool) -> str:
 
 
 def _file_lines(info: RunInfo, *, verified: bool) -> list[tuple[str, str]]:
-    from twin.cli.show.words import clock, grouped, size
+    from twin.number_format import clock, grouped, size
 
     header = info.header
     state = _state(info, verified=verified)

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from twin.cli.show.progress import Progress, report
-from twin.cli.show.watch import Watch
 from twin.cli.stop import StopRequest
 from twin.job import Job
 from twin.record import Collision, Record, RunSummary
 from twin.run.drive import Replaying, drive
+from twin.run.watch import Watch
 from twin.sinks.outputs import Write
 
 if TYPE_CHECKING:

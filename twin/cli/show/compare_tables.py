@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from twin.cli.show.summary import table
-from twin.cli.show.words import column, digits
+from twin.number_format import column, digits
 
 if TYPE_CHECKING:
     from twin.comparison.batch import Row

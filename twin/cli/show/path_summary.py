@@ -9,7 +9,7 @@ from pathlib import Path
 from twin.cam.path.to_nc import describe
 from twin.cam.path.toolpath import MoveKind
 from twin.cli.console import results
-from twin.cli.show.words import clock, grouped, plural
+from twin.number_format import clock, grouped, plural
 from twin.planning.planned_path import PlannedPath
 
 

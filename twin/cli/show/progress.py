@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Protocol, Self
 
 from twin.cli.console import errors
-from twin.cli.show.words import clock
+from twin.number_format import clock
 from twin.record import NcEvent, Record, RunHeader, Step
 
 #: Least time between two updates of the line, s.

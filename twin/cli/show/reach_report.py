@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from twin.cli.console import results
-from twin.cli.show.words import plural
+from twin.number_format import plural
 
 if TYPE_CHECKING:
     from twin.arrays import FloatArray

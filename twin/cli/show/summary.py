@@ -11,11 +11,11 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from twin.cli.show.words import clock, column, digits, plural, volume
+from twin.number_format import clock, column, digits, plural, volume
 
 if TYPE_CHECKING:
-    from twin.cli.show.watch import CollisionGroup
     from twin.record import RunHeader, RunSummary, ToolSummary
+    from twin.run.watch import CollisionGroup
 
 _MOST_GROUPS = 10
 _LONGEST_BLOCK = 76

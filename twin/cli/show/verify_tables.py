@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from twin.cli.console import results, warn
-from twin.cli.show.words import plural, volume
+from twin.number_format import plural, volume
 from twin.verification.deviation import SHARES, Deviation
 from twin.verification.regions import DeviationRegion
 from twin.verification.verification import Verification

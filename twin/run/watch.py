@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from twin.cli.show.words import plural
+from twin.number_format import plural
 from twin.record import Collision, CollisionKind, NcEvent, Record, RunHeader, RunSummary, Step
 from twin.run.plausibility import Plausibility
 
