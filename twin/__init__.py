@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         SettingsError,
         StockError,
         ToolError,
+        ToolLibraryError,
         ToolPathError,
         TwinError,
     )
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
         WorkpiecePatch,
     )
     from twin.run.run import Run
+    from twin.tool_library import LibraryTool, ToolCylinder, ToolLibrary, read_tool_library
     from twin.verification.settings import VerifySettings
     from twin.verification.verification import Verification, verify
     from twin.version import __version__
@@ -80,6 +82,7 @@ __all__ = [
     "IdentifyError",
     "Job",
     "JobError",
+    "LibraryTool",
     "LogReading",
     "Material",
     "MaterialError",
@@ -101,7 +104,10 @@ __all__ = [
     "Step",
     "StockError",
     "SurfaceMesh",
+    "ToolCylinder",
     "ToolError",
+    "ToolLibrary",
+    "ToolLibraryError",
     "ToolPathError",
     "ToolRecord",
     "ToolSummary",
@@ -122,6 +128,7 @@ __all__ = [
     "plan_paths",
     "reach",
     "read_log",
+    "read_tool_library",
     "records",
     "replay",
     "verify",
@@ -139,16 +146,8 @@ _HOMES = {
     "twin.comparison.comparison": ("Comparison",),
     "twin.errors": (
         *("ArchiveError", "CollisionError", "CompareError", "CutsError", "IdentifyError", "JobError", "MaterialError"),
-        *(
-            "MeasuredError",
-            "MeshError",
-            "ReplayError",
-            "SettingsError",
-            "StockError",
-            "ToolError",
-            "ToolPathError",
-            "TwinError",
-        ),
+        *("MeasuredError", "MeshError", "ReplayError", "SettingsError", "StockError", "ToolError", "ToolLibraryError"),
+        *("ToolPathError", "TwinError"),
     ),
     "twin.identification.result": ("Identified",),
     "twin.job": ("Job", "job_from_dict", "load_job"),
@@ -164,6 +163,7 @@ _HOMES = {
         *("Step", "ToolRecord", "ToolSummary", "WorkpiecePatch"),
     ),
     "twin.run.run": ("Run",),
+    "twin.tool_library": ("LibraryTool", "ToolCylinder", "ToolLibrary", "read_tool_library"),
     "twin.verification.settings": ("VerifySettings",),
     "twin.verification.verification": ("Verification", "verify"),
     "twin.version": ("__version__",),

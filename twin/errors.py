@@ -37,6 +37,10 @@ class ToolError(TwinError):
     """A tool whose shape or edge cannot be built."""
 
 
+class ToolLibraryError(TwinError):
+    """A tool library that cannot be read, or a tool that is not in it or cannot be simulated."""
+
+
 class ToolPathError(TwinError):
     """A tool path that cannot be planned or written: wrong parameters, an empty path, or a file."""
 

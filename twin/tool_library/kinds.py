@@ -1,0 +1,70 @@
+"""Types of tools: their words in libraries, and which of them can be simulated."""
+
+from __future__ import annotations
+
+import re
+
+#: Kinds of the job file.
+SIMULATED = ("flat", "ball", "bull", "taper")
+
+_POINT = "its point is not modelled; only flat, ball, bull-nose and taper tools are simulated"
+_NOT_CONVEX = "the tool is narrower above its cutting part's widest section, which the simulation does not model"
+_NOT_MILLING = "it is not a milling tool"
+_OBSTACLES = {
+    **dict.fromkeys(
+        ("drill", "spot drill", "centre drill", "countersink", "reamer", "counterbore", "boring bar"), _POINT
+    ),
+    **dict.fromkeys(("tap", "thread mill"), "threads are not modelled"),
+    **dict.fromkeys(("lollipop mill", "dovetail mill", "slitting saw"), _NOT_CONVEX),
+    "radius mill": "its profile is concave; only convex tools are simulated",
+    "circle segment mill": "its curved flank is not modelled",
+    "form mill": "its profile is not in the library",
+    "chamfer mill": "its tip is a point, and a taper tool needs a tip diameter above 0",
+    **dict.fromkeys(("probe", "turning tool", "laser", "jet cutter", "holder"), _NOT_MILLING),
+}
+_UNKNOWN = "the type is not known; expected a flat, ball, bull-nose or taper tool"
+
+#: Words of a type, in the order in which they are looked for, and the kind.
+_WORDS: tuple[tuple[str, str], ...] = (
+    (r"turning|insert|lathe", "turning tool"),
+    (r"laser", "laser"),
+    (r"\bjet\b|water ?jet|plasma|deposit", "jet cutter"),
+    (r"probe|touch", "probe"),
+    (r"holder", "holder"),
+    (r"thread ?mill|thread ?cutter", "thread mill"),
+    (r"\btap\b|\btap (?:right|left)|thread (?:form|cut)", "tap"),
+    (r"circle ?segment|barrel|lens|oval|parabolic", "circle segment mill"),
+    (r"lollipop|undercut", "lollipop mill"),
+    (r"dovetail", "dovetail mill"),
+    (r"radius ?mill|corner ?round|fillet|^radius$", "radius mill"),
+    (r"saw|slitting", "slitting saw"),
+    (r"form", "form mill"),
+    (r"cent(?:er|re) ?drill", "centre drill"),
+    (r"spot", "spot drill"),
+    (r"counter ?sink", "countersink"),
+    (r"counter ?bore", "counterbore"),
+    (r"ream", "reamer"),
+    (r"bor(?:e|ing)", "boring bar"),
+    (r"drill", "drill"),
+    (r"chamfer|\bv ?-?_? ?bit|vbit|engrav|conical|snub|v ?-?carv", "chamfer mill"),
+    (r"taper", "taper"),
+    (r"ball|spher", "ball"),
+    (r"bull|torus|toroid|corner ?rad|radiused", "bull"),
+    (r"face ?mill|facing|surfac", "face mill"),
+    (r"slot ?mill|t-? ?slot|woodruff", "slot mill"),
+    (r"flat|end ?mill|square|cylindric|straight|rough|slot ?drill|up-? ?cut|down-? ?cut|compression", "flat"),
+)
+
+
+def kind_of_word(word: str) -> str | None:
+    """The kind that a type's name or a description means; None where it has no word of a tool.
+
+    The result is one of `SIMULATED`, ``face mill``, ``slot mill``, or a kind that cannot be simulated.
+    """
+    text = re.sub(r"[\s_]+", " ", word.strip().lower())
+    return next((kind for pattern, kind in _WORDS if re.search(pattern, text)), None)
+
+
+def obstacle_of_kind(kind: str) -> str:
+    """Reason why tools of a kind cannot be simulated."""
+    return _OBSTACLES.get(kind, _UNKNOWN)

@@ -1,0 +1,73 @@
+"""A tool library from a file of any known format, which is recognised by what the file holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from twin.errors import ToolLibraryError
+from twin.settings.file_kinds import kind_by_suffix
+from twin.tool_library.assemble import assemble
+from twin.tool_library.file_text import json_of, read_bytes, text_of, unpacked
+from twin.tool_library.fusion import fusion_tools
+from twin.tool_library.library import ToolLibrary
+from twin.tool_library.library_tool import LibraryTool
+from twin.tool_library.plain_csv import csv_tools
+from twin.tool_library.quantities import LibraryUnit
+from twin.tool_library.raw_tool import RawTool
+
+_ZIP = b"PK\x03\x04"
+
+
+def read_tool_library(path: str | PathLike[str], unit: LibraryUnit = "mm") -> ToolLibrary:
+    """Read the tools of a library: Fusion 360, FreeCAD, LinuxCNC, CAMotics, or CSV.
+
+    Args:
+        path: the file.
+        unit: unit of lengths in files that state none: ``mm`` or ``inch``.
+
+    Returns:
+        Its tools in the terms of the job file, with notes on what was assumed and warnings for values that cannot be
+        right.
+
+    Raises:
+        ToolLibraryError: the file cannot be read, is not a tool library, is damaged, or has no tools.
+
+    Example:
+        >>> for tool in twin.read_tool_library("shop.tools").tools:
+        ...     print(tool.number, tool.name, tool.kind, tool.diameter_mm, tool.obstacle)
+    """
+    path = Path(path)
+    other = kind_by_suffix(path)
+    if other is not None and path.is_file():
+        raise ToolLibraryError(f"{path}: is not a tool library but {other}")
+    form, tools = _read(read_bytes(path), path, unit)
+    if not tools:
+        raise ToolLibraryError(f"{path}: the {form} library has no tools; expected at least one")
+    return ToolLibrary(path=path, format=form, tools=tuple(tools))
+
+
+def _read(data: bytes, path: Path, unit: LibraryUnit) -> tuple[str, list[LibraryTool]]:
+    """Format and tools of a file."""
+    if data.startswith(_ZIP):
+        return _json_tools(json_of(unpacked(data, path), path), path)
+    start = text_of(data[:400], path, legacy=True).lstrip("\ufeff \t\r\n")
+    if start[:1] in ("{", "["):
+        return _json_tools(json_of(data, path), path)
+    text = text_of(data, path, legacy=True)
+    return "CSV", [*csv_tools(text, path, unit)]
+
+
+def _json_tools(data: Any, path: Path) -> tuple[str, list[LibraryTool]]:
+    if isinstance(data, Mapping) and isinstance(data.get("data"), list):
+        return "Fusion 360", _assembled(fusion_tools(data, path))
+    if isinstance(data, list) and data and isinstance(data[0], Mapping) and "geometry" in data[0]:
+        return "Fusion 360", _assembled(fusion_tools(data, path))
+    keys = ", ".join(map(str, [*data][:4])) if isinstance(data, Mapping) else "a list" if isinstance(data, list) else ""
+    raise ToolLibraryError(f"{path}: is JSON ({keys or 'a value'}) but not a tool library; expected one")
+
+
+def _assembled(raw: Iterable[RawTool]) -> list[LibraryTool]:
+    return [assemble(tool) for tool in raw]
