@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from twin.comparison.comparison import Comparison, WindowResult
+from twin.comparison.verdict import verdict
 
 
 def comparison_object(found: Comparison) -> dict[str, Any]:
@@ -23,6 +24,7 @@ def comparison_object(found: Comparison) -> dict[str, Any]:
         "lag_s": found.lag_s,
         "lag_found": found.delay is not None,
         "correlation": found.score,
+        "verdict": verdict(found),
         "overlap_s": [float(found.t_s[0]), float(found.t_s[-1])] if len(found.t_s) else None,
         "samples": len(found.t_s),
         "measured_rpm": found.speed.rpm if found.speed else None,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -14,12 +12,10 @@ from scipy import signal
 from twin.arrays import FloatArray
 from twin.comparison.comparison import Comparison, WindowResult
 from twin.measured.log import AXES
+from twin.pages.figures import AXIS_COLOURS, DPI, RESULTANT, WIDTH, dress, png, stack
 
-_COLORS = {"x": "#d1472c", "y": "#12805c", "z": "#1f6fc4"}
 _MEASURED = "#5b626c"
 _ERROR = "#a03090"
-_DPI = 130
-_WIDTH = 9.6
 #: A record is drawn as the band between its extremes once it has more samples than this.
 _BAND_SAMPLES = 6000
 _BANDS = 1800
@@ -30,42 +26,42 @@ _ANGLE_BINS = 72
 def whole_record(found: Comparison) -> bytes:
     """All axes over the whole overlap, the windows shaded."""
     axes = found.log.axes
-    figure, parts = _stack(len(axes), 1.9)
+    figure, parts = stack(len(axes), 1.9)
     for part, axis in zip(parts, axes, strict=True):
         i = AXES.index(axis)
         _curve(part, found.t_s, found.measured_n[:, i], _MEASURED, "measured", 1.0)
-        _curve(part, found.t_s, found.simulated_n[:, i], _COLORS[axis], "simulated", 0.75)
+        _curve(part, found.t_s, found.simulated_n[:, i], AXIS_COLOURS[axis], "simulated", 0.75)
         for window in found.windows:
             if not window.whole:
                 part.axvspan(*window.span_s, color="#ffe28a", lw=0, zorder=0)
                 for edge in window.span_s:
                     part.axvline(edge, color="#d99a00", lw=0.8, zorder=4)
-        _dress(part, f"F{axis}, N")
+        dress(part, f"F{axis}, N")
     parts[-1].set_xlabel("run time, s")
-    return _png(figure)
+    return png(figure)
 
 
 def window_waveforms(found: Comparison, window: WindowResult) -> bytes:
     """All axes in one window, and the error below the two."""
     axes = found.log.axes
-    figure, parts = _stack(len(axes), 2.1)
+    figure, parts = stack(len(axes), 2.1)
     for part, axis in zip(parts, axes, strict=True):
         i = AXES.index(axis)
         measured, simulated = window.measured_n[:, i], window.simulated_n[:, i]
         _curve(part, window.t_s, measured, _MEASURED, "measured", 1.0)
-        _curve(part, window.t_s, simulated, _COLORS[axis], "simulated", 0.9)
+        _curve(part, window.t_s, simulated, AXIS_COLOURS[axis], "simulated", 0.9)
         if len(window.t_s) <= _BAND_SAMPLES:
             part.plot(window.t_s, simulated - measured, color=_ERROR, lw=0.9, label="simulated − measured")
         part.axhline(0.0, color="#c9ced6", lw=0.7, zorder=0)
-        _dress(part, f"F{axis}, N")
+        dress(part, f"F{axis}, N")
     parts[-1].set_xlabel("run time, s")
-    return _png(figure)
+    return png(figure)
 
 
 def spectra(found: Comparison) -> bytes:
     """Amplitude spectra over the whole overlap, multiples of the tooth-passing frequency marked."""
     axes = found.log.axes
-    figure, parts = _stack(len(axes), 1.9)
+    figure, parts = stack(len(axes), 1.9)
     turning = found.run.speed_in((float(found.t_s[0]), float(found.t_s[-1])))
     passing = abs(turning[0]) / 60.0 * turning[1] if turning else 0.0
     top = min(0.5 * found.log.rate_hz, 12.0 * passing if passing else np.inf)
@@ -73,7 +69,7 @@ def spectra(found: Comparison) -> bytes:
         i = AXES.index(axis)
         for values, color, name in (
             (found.measured_n, _MEASURED, "measured"),
-            (found.simulated_n, _COLORS[axis], "simulated"),
+            (found.simulated_n, AXIS_COLOURS[axis], "simulated"),
         ):
             hz, amplitude = _amplitudes(values[:, i], found.log.rate_hz)
             keep = hz <= top
@@ -84,17 +80,17 @@ def spectra(found: Comparison) -> bytes:
         low, high = part.get_ylim()
         part.set_ylim(max(low, 1e-4 * high), high)
         part.set_xlim(0.0, top)
-        _dress(part, f"F{axis} amplitude, N")
+        dress(part, f"F{axis} amplitude, N")
     parts[-1].set_xlabel(
         "frequency, Hz" + (f"  (lines: multiples of {passing:g} Hz, tooth passing)" if passing else "")
     )
-    return _png(figure)
+    return png(figure)
 
 
 def error_histogram(found: Comparison) -> bytes:
     """Frequency of errors, each axis, each window."""
     axes = found.log.axes
-    figure = Figure(figsize=(_WIDTH, 2.7), dpi=_DPI, layout="constrained")
+    figure = Figure(figsize=(WIDTH, 2.7), dpi=DPI, layout="constrained")
     parts = figure.subplots(1, len(axes), sharey=True, squeeze=False)[0]
     styles = ("-", "--", ":", "-.")
     for part, axis in zip(parts, axes, strict=True):
@@ -106,18 +102,18 @@ def error_histogram(found: Comparison) -> bytes:
         for k, (window, error) in enumerate(zip(found.windows, errors, strict=True)):
             counts = np.histogram(error, edges)[0] / len(error)
             name = f"{window.span_s[0]:g}–{window.span_s[1]:g} s"
-            part.stairs(100.0 * counts, edges, color=_COLORS[axis], ls=styles[k % 4], lw=1.3, label=name)
+            part.stairs(100.0 * counts, edges, color=AXIS_COLOURS[axis], ls=styles[k % 4], lw=1.3, label=name)
         part.axvline(0.0, color="#c9ced6", lw=0.7, zorder=0)
-        _dress(part, "", len(found.windows) <= 4)
+        dress(part, "", len(found.windows) <= 4)
         part.set_xlabel(f"error of F{axis}, N")
     parts[0].set_ylabel("samples, %")
-    return _png(figure)
+    return png(figure)
 
 
 def polar(found: Comparison, window: WindowResult) -> bytes:
     """Force against the spindle's angle: mean and range of the measurement over the turns, mean of the simulation."""
     axes = found.log.axes
-    figure = Figure(figsize=(_WIDTH, 3.05), dpi=_DPI, layout="constrained")
+    figure = Figure(figsize=(WIDTH, 3.05), dpi=DPI, layout="constrained")
     names = [*axes, "resultant"] if len(axes) > 1 else list(axes)
     for k, axis in enumerate(names):
         part = figure.add_subplot(1, len(names), k + 1, projection="polar")
@@ -126,7 +122,7 @@ def polar(found: Comparison, window: WindowResult) -> bytes:
         part.set_title(f"|F{axis}|, N" if axis in AXES else "resultant, N", fontsize=9)
     handles, labels = figure.axes[-1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
-    return _png(figure)
+    return png(figure)
 
 
 def _polar_axis(part: PolarAxes, window: WindowResult, axis: str) -> None:
@@ -144,7 +140,7 @@ def _polar_axis(part: PolarAxes, window: WindowResult, axis: str) -> None:
 
     part.fill_between(closed, ring(low), ring(high), color=_MEASURED, alpha=0.22, lw=0, label="measured, all turns")
     part.plot(closed, ring(mean), color=_MEASURED, lw=1.3, label="measured, mean")
-    color = _COLORS.get(axis, "#222831")
+    color = AXIS_COLOURS.get(axis, RESULTANT)
     part.plot(closed, ring(simulated_mean), color=color, lw=1.3, label="simulated, mean")
     part.set_theta_direction(-1)
     part.set_thetagrids(range(0, 360, 90), fontsize=7)
@@ -199,37 +195,3 @@ def _curve(part: Axes, t_s: FloatArray, values: FloatArray, color: str, name: st
         lw=0.3,
         label=name,
     )
-
-
-def _stack(count: int, height: float) -> tuple[Figure, list[Axes]]:
-    figure = Figure(figsize=(_WIDTH, height * count + 0.4), dpi=_DPI, layout="constrained")
-    parts = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-    return figure, list(parts)
-
-
-def _dress(part: Axes, label: str, legend: bool = True) -> None:
-    """Labels, a light grid, no box."""
-    if label:
-        part.set_ylabel(label, fontsize=9)
-    part.grid(color="#e6e9ee", lw=0.6)
-    part.set_axisbelow(True)
-    part.spines[["top", "right"]].set_visible(False)
-    part.tick_params(labelsize=8)
-    part.margins(x=0.0)
-    if legend:
-        part.legend(
-            loc="lower right",
-            bbox_to_anchor=(1.0, 0.985),
-            borderaxespad=0.0,
-            fontsize=7.5,
-            ncols=4,
-            frameon=False,
-            handlelength=1.6,
-            columnspacing=1.2,
-        )
-
-
-def _png(figure: Figure) -> bytes:
-    out = io.BytesIO()
-    figure.savefig(out, format="png", metadata={"Software": None})
-    return out.getvalue()

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import math
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader
-from markupsafe import Markup, escape
-
-from gcode.underline import harmless, harmless_json
+from gcode.underline import harmless_json
 from twin.archive.container.partial import PartialFile
 from twin.comparison import plots
 from twin.comparison.as_json import comparison_object
 from twin.comparison.comparison import Comparison, WindowResult
+from twin.comparison.verdict import verdict
+from twin.pages.page import page
 
 REPORT = "report.html"
 
@@ -43,34 +41,25 @@ def html(found: Comparison, pictures: dict[str, bytes]) -> str:
     Args:
         pictures: PNG data by name, as `_pictures` makes them.
     """
-    environment = Environment(loader=PackageLoader("twin.comparison", ""), autoescape=True, finalize=_clean)
-    environment.filters.update(newtons=_newtons, percent=_percent, ratio=_ratio, degrees=_degrees)
-
-    def figure(name: str, caption: str) -> Markup:
-        data = base64.b64encode(pictures[name]).decode()
-        image = f'<img alt="{escape(caption)}" src="data:image/png;base64,{data}">'
-        return Markup(f"<figure>{image}<figcaption>{escape(caption)}</figcaption></figure>")
-
     log = found.log
-    return environment.get_template("report.html.j2").render(
+    return page(
+        "twin.comparison",
+        "report.html.j2",
+        pictures,
+        {"newtons": _newtons, "percent": _percent, "ratio": _ratio, "degrees": _degrees},
         title=f"{found.run.path.name} against {log.source.name}",
         subtitle=_subtitle(found),
+        verdict=verdict(found),
         warnings=found.warnings,
         axes=log.axes,
         windows=[_window(k, w) for k, w in enumerate(found.windows, 1)],
         whole=found.windows[0].whole,
-        figure=figure,
         done=[*(("read", note) for note in log.notes), *((c.kind, c.text) for c in found.corrections)],
     )
 
 
 def _json(found: Comparison) -> str:
     return harmless_json(json.dumps(comparison_object(found), ensure_ascii=False, indent=1))
-
-
-def _clean(value: object) -> object:
-    """A value of the template; names and notes may hold any character."""
-    return harmless(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
 def _subtitle(found: Comparison) -> str:

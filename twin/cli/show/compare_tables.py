@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from twin.cli.show.summary import table
+from twin.comparison.verdict import verdict
 from twin.number_format import column, digits
 
 if TYPE_CHECKING:
@@ -21,10 +22,11 @@ _MOST_LINES = 3
 
 
 def print_comparison(console: Console, found: Comparison) -> None:
-    """Print the corrections, the errors as in the tri-slice paper's Table 6, and further errors."""
+    """Print the verdict, the corrections, the errors as in the tri-slice paper's Table 6, and further errors."""
     title = Text(found.run.path.name, style="bold")
     title.append(f"  against  {found.log.source.name}", style="bold")
     console.print(title)
+    console.print(Text(verdict(found)))
     _section(console, "Corrections of the log", _corrections(found))
     _section(console, "Errors of the simulated force on the tool, N", _errors(found))
     _section(console, "Further errors, N", _details(found))
