@@ -64,3 +64,42 @@ FUSION_CSV = (
     '1,"Brass","ball end mill","2 mm ball",2,7,"millimeters",20,6,2,4,6,"H3.0 U4.0 L2.0; H11.0 U4.0 L4.0","H5 U9 L8"\n'
     '1,"Steel","ball end mill","2 mm ball",2,7,"millimeters",20,6,2,4,6,"H3.0 U4.0 L2.0; H11.0 U4.0 L4.0","H5 U9 L8"\n'
 )
+
+
+def freecad_bit(name: str = "6 mm bull", shape: str = "bullnose.fcstd", **parameters: Any) -> bytes:
+    """A tool bit; a parameter that is None is left out."""
+    sizes = {
+        "Diameter": "6.0000 mm",
+        "CuttingEdgeHeight": "20,0 mm",
+        "Length": "60.000 mm",
+        "ShankDiameter": "6 mm",
+        "Flutes": "3",
+        "CornerRadius": "0.5000 mm",
+        "Material": "Carbide",
+    }
+    given = {key: value for key, value in (sizes | parameters).items() if value is not None}
+    return json.dumps({"version": 2, "name": name, "shape": shape, "parameter": given, "attribute": {}}).encode()
+
+
+def freecad_library(*paths: str) -> bytes:
+    """A library of bits numbered from 1."""
+    return json.dumps({"tools": [{"nr": n, "path": p} for n, p in enumerate(paths, start=1)], "version": 1}).encode()
+
+
+#: A nut as FreeCAD describes it: radius and height above its face, from the axis back to it.
+FREECAD_HOLDER = json.dumps(
+    {"version": 1, "name": "nut", "units": "mm", "profile": [[0, 0], [14, 0], [15, 1], [15, 18], [0, 18]]}
+).encode()
+
+CAMOTICS = json.dumps(
+    {
+        "1": {"units": "imperial", "shape": "Cylindrical", "length": 0.5, "diameter": 0.25, "description": "flat"},
+        "2": {"units": "metric", "shape": "ballnose", "length": 12, "diameter": 4, "description": "ball"},
+        "3": {"units": "metric", "shape": "conical", "length": 5, "diameter": 10, "description": "point"},
+        "4": {"units": "metric", "shape": "snubnose", "length": 5, "diameter": 11, "snub_diameter": 1.0},
+    }
+).encode()
+
+LINUXCNC = (
+    "; tools of the mill\nT1 P1 D6.0 Z-12.3 ;6 mm ball end mill\n\nT2 P2 Z40.5 D10 ; face\nT7 P7 D8.5 ;8.5 drill\n"
+)

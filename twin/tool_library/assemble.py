@@ -22,6 +22,8 @@ _LARGEST_DIAMETER_MM = 500.0
 _LONGEST_MM = 1000.0
 #: A shank wider than this and than twice the cutting part is a wrong value, mm.
 _WIDEST_SHANK_MM = 100.0
+#: Smallest size that is not 0, mm.
+_SMALLEST_MM = 1e-3
 _MOST_TEETH = 100
 #: Lengths from the tip, each at most the next.
 _LENGTHS = ("flutes", "shoulder", "stickout", "overall")
@@ -98,8 +100,8 @@ def _check_ranges(found: _Checked) -> None:
         most = _LARGEST_DIAMETER_MM if name in _DIAMETERS or name in ("corner", "tip") else _LONGEST_MM
         if size.value < 0.0 or (size.value == 0.0 and name == "diameter"):
             found.refuse(name, "above 0")
-        elif size.value > most:
-            found.refuse(name, f"at most {most:g} mm")
+        elif not (size.value == 0.0 or _SMALLEST_MM <= size.value <= most):
+            found.refuse(name, f"{_SMALLEST_MM:g} to {most:g} mm")
         elif size.value == 0.0 and name not in _MAY_BE_ZERO:
             del found.sizes[name]
     diameter, shank = found.get("diameter"), found.get("shank")

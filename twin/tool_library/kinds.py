@@ -19,6 +19,7 @@ _OBSTACLES = {
     "radius mill": "its profile is concave; only convex tools are simulated",
     "circle segment mill": "its curved flank is not modelled",
     "form mill": "its profile is not in the library",
+    "missing bit": "the file of the bit is not next to the library",
     "chamfer mill": "its tip is a point, and a taper tool needs a tip diameter above 0",
     **dict.fromkeys(("probe", "turning tool", "laser", "jet cutter", "holder"), _NOT_MILLING),
 }
@@ -26,33 +27,35 @@ _UNKNOWN = "the type is not known; expected a flat, ball, bull-nose or taper too
 
 #: Words of a type, in the order in which they are looked for, and the kind.
 _WORDS: tuple[tuple[str, str], ...] = (
-    (r"turning|insert|lathe", "turning tool"),
+    (r"turning|\blathe", "turning tool"),
     (r"laser", "laser"),
     (r"\bjet\b|water ?jet|plasma|deposit", "jet cutter"),
-    (r"probe|touch", "probe"),
+    (r"probe|\btouch", "probe"),
     (r"holder", "holder"),
     (r"thread ?mill|thread ?cutter", "thread mill"),
-    (r"\btap\b|\btap (?:right|left)|thread (?:form|cut)", "tap"),
-    (r"circle ?segment|barrel|lens|oval|parabolic", "circle segment mill"),
+    (r"\btap\b|thread (?:form|cut)", "tap"),
+    (r"circle ?segment|barrel|\blens\b|\boval\b|spheroid", "circle segment mill"),
     (r"lollipop|undercut", "lollipop mill"),
     (r"dovetail", "dovetail mill"),
     (r"radius ?mill|corner ?round|fillet|^radius$", "radius mill"),
-    (r"saw|slitting", "slitting saw"),
-    (r"form", "form mill"),
+    (r"\bsaw|slitting", "slitting saw"),
+    (r"\bform\b", "form mill"),
+    (r"slot ?drill", "flat"),
     (r"cent(?:er|re) ?drill", "centre drill"),
-    (r"spot", "spot drill"),
+    (r"\bspot", "spot drill"),
     (r"counter ?sink", "countersink"),
     (r"counter ?bore", "counterbore"),
-    (r"ream", "reamer"),
-    (r"bor(?:e|ing)", "boring bar"),
+    (r"\bream", "reamer"),
+    (r"\bbor(?:e|ing)\b", "boring bar"),
     (r"drill", "drill"),
-    (r"chamfer|\bv ?-?_? ?bit|vbit|engrav|conical|snub|v ?-?carv", "chamfer mill"),
+    (r"conical ?ball", "taper"),
+    (r"chamfer|\bv ?bit|engrav|conical|snub|\bv ?carv", "chamfer mill"),
     (r"taper", "taper"),
-    (r"ball|spher", "ball"),
+    (r"ball|spherical", "ball"),
     (r"bull|torus|toroid|corner ?rad|radiused", "bull"),
     (r"face ?mill|facing|surfac", "face mill"),
-    (r"slot ?mill|t-? ?slot|woodruff", "slot mill"),
-    (r"flat|end ?mill|square|cylindric|straight|rough|slot ?drill|up-? ?cut|down-? ?cut|compression", "flat"),
+    (r"slot ?mill|\bt ?slot|woodruff", "slot mill"),
+    (r"flat|end ?mill|square|cylindric|straight|rough|up ?cut|down ?cut|compression", "flat"),
 )
 
 
@@ -61,7 +64,7 @@ def kind_of_word(word: str) -> str | None:
 
     The result is one of `SIMULATED`, ``face mill``, ``slot mill``, or a kind that cannot be simulated.
     """
-    text = re.sub(r"[\s_]+", " ", word.strip().lower())
+    text = re.sub(r"[\s_-]+", " ", word.strip().lower())
     return next((kind for pattern, kind in _WORDS if re.search(pattern, text)), None)
 
 

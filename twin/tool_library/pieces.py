@@ -14,7 +14,7 @@ _MOST_STEPS = 6
 #: Most pieces of a shaft or holder.
 _MOST_PIECES = 60
 _LARGEST_MM = 1000.0
-#: Lengths shorter than this are left out, mm.
+#: Pieces shorter or thinner than this are left out, mm.
 _SHORTEST_MM = 1e-3
 
 
@@ -82,7 +82,7 @@ def _pieces(frusta: Iterable[Frustum], what: str, warnings: list[str]) -> Iterat
         if min(piece.lower_mm, piece.upper_mm, piece.length_mm) < 0.0 or max(largest, piece.length_mm) > _LARGEST_MM:
             sizes = f"{piece.lower_mm:g} to {piece.upper_mm:g} mm, {piece.length_mm:g} mm long"
             warnings.append(f"{what} segment {index + 1}, {sizes}: expected sizes from 0 to {_LARGEST_MM:g} mm")
-        elif piece.length_mm > _SHORTEST_MM and largest > 0.0:
+        elif min(piece.length_mm, largest) > _SHORTEST_MM:
             yield from _cylinders(piece)
 
 

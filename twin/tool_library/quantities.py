@@ -44,7 +44,8 @@ def length_mm(value: object, unit: LibraryUnit) -> float:
     number, word = _split(value, "a length, e.g. 6.35 mm")
     if word and word not in _LENGTHS:
         raise ValueError("a length in mm or inches")
-    return number * (_LENGTHS[word] if word else MM_PER[unit])
+    factor = _LENGTHS[word] if word else MM_PER[unit]
+    return number if factor == 1.0 else round(number * factor, 9)
 
 
 def angle_deg(value: object) -> float:

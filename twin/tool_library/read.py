@@ -9,12 +9,15 @@ from typing import Any
 
 from twin.errors import ToolLibraryError
 from twin.settings.file_kinds import kind_by_suffix
-from twin.tool_library.assemble import assemble
+from twin.tool_library.assemble import assemble, cleaned
 from twin.tool_library.file_text import json_of, read_bytes, text_of, unpacked
-from twin.tool_library.fusion import fusion_tools
+from twin.tool_library.formats import freecad
+from twin.tool_library.formats.camotics import is_table, table_tools
+from twin.tool_library.formats.fusion import fusion_tools
+from twin.tool_library.formats.linuxcnc import is_tool_table, tool_table
+from twin.tool_library.formats.plain_csv import csv_tools
 from twin.tool_library.library import ToolLibrary
 from twin.tool_library.library_tool import LibraryTool
-from twin.tool_library.plain_csv import csv_tools
 from twin.tool_library.quantities import LibraryUnit
 from twin.tool_library.raw_tool import RawTool
 
@@ -57,16 +60,31 @@ def _read(data: bytes, path: Path, unit: LibraryUnit) -> tuple[str, list[Library
     if start[:1] in ("{", "["):
         return _json_tools(json_of(data, path), path)
     text = text_of(data, path, legacy=True)
+    if is_tool_table(text):
+        return "LinuxCNC", _assembled(tool_table(text, path, unit))
     return "CSV", [*csv_tools(text, path, unit)]
 
 
 def _json_tools(data: Any, path: Path) -> tuple[str, list[LibraryTool]]:
-    if isinstance(data, Mapping) and isinstance(data.get("data"), list):
+    if isinstance(data, Mapping):
+        tools = data.get("tools")
+        if isinstance(data.get("data"), list):
+            return "Fusion 360", _assembled(fusion_tools(data, path))
+        if isinstance(tools, list):
+            return "FreeCAD", _assembled(freecad.library_tools(data, path))
+        if freecad.is_bit(data):
+            return "FreeCAD", _assembled([freecad.bit_tool(data, path, None)])
+        if isinstance(data.get("profile"), list):
+            return "FreeCAD", _assembled([freecad.holder_tool(data, path)])
+        table: Mapping[str, Any] = tools if isinstance(tools, Mapping) else data
+        if is_table(table):
+            return "CAMotics", _assembled(table_tools(table, path))
+    elif isinstance(data, list) and data and isinstance(data[0], Mapping) and "geometry" in data[0]:
         return "Fusion 360", _assembled(fusion_tools(data, path))
-    if isinstance(data, list) and data and isinstance(data[0], Mapping) and "geometry" in data[0]:
-        return "Fusion 360", _assembled(fusion_tools(data, path))
-    keys = ", ".join(map(str, [*data][:4])) if isinstance(data, Mapping) else "a list" if isinstance(data, list) else ""
-    raise ToolLibraryError(f"{path}: is JSON ({keys or 'a value'}) but not a tool library; expected one")
+    held = f"with {', '.join(cleaned(key) for key in [*data][:4])}" if isinstance(data, Mapping) else ""
+    raise ToolLibraryError(
+        f"{path}: JSON {held or 'without tools'} is not a tool library; expected one of Fusion 360, FreeCAD or CAMotics"
+    )
 
 
 def _assembled(raw: Iterable[RawTool]) -> list[LibraryTool]:

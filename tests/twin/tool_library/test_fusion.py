@@ -123,13 +123,14 @@ def test_a_chamfer_mill_with_a_flat_tip_is_a_cone(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "warning"),
     [
-        ({"SFDM": 25374.6}, "SFDM = 25374.6 mm: expected at most 500 mm"),
+        ({"SFDM": 25374.6}, "SFDM = 25374.6 mm: expected 0.001 to 500 mm"),
         ({"SFDM": 140.0}, "SFDM = 140 mm: expected a shank diameter up to 100 mm"),
         ({"LCF": 60.0, "shoulder_length": 60.0, "LB": 61.0}, "LCF = 60 mm: expected at most OAL = 57 mm"),
         ({"LB": 10.0}, "LB = 10 mm: expected at least LCF = 18 mm"),
         ({"shoulder_length": 5.0}, "shoulder-length = 5 mm: expected at least LCF = 18 mm"),
         ({"DC": -6.0}, "DC = -6 mm: expected above 0"),
         ({"DC": 0}, "DC = 0 mm: expected above 0"),
+        ({"DC": 1e-9}, "DC = 1e-09 mm: expected 0.001 to 500 mm"),
         ({"DC": "six"}, 'DC = "six": expected a length, e.g. 6.35 mm'),
         ({"DC": True}, "DC = true: expected a length, e.g. 6.35 mm"),
         ({"RE": 9.0}, "RE = 9 mm: expected at most half of DC = 6 mm"),

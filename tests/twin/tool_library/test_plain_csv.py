@@ -12,7 +12,7 @@ from support.tool_libraries import FUSION_CSV
 from twin.errors import ToolLibraryError
 from twin.tool_library import LibraryTool, ToolCylinder, read_tool_library
 from twin.tool_library.assemble import assemble
-from twin.tool_library.plain_csv import csv_text, csv_tools
+from twin.tool_library.formats.plain_csv import csv_text, csv_tools
 from twin.tool_library.raw_tool import Frustum, RawTool, Size
 
 PATH = Path("tools.csv")

@@ -15,8 +15,8 @@ from pathlib import Path
 
 from twin.errors import ToolLibraryError
 from twin.tool_library.assemble import assemble, cleaned
-from twin.tool_library.csv_columns import ANGLES, COLUMNS, LENGTHS, Column, column_of
 from twin.tool_library.fields import Fields
+from twin.tool_library.formats.csv_columns import ANGLES, COLUMNS, LENGTHS, Column, column_of
 from twin.tool_library.kinds import kind_of_word
 from twin.tool_library.library_tool import LibraryTool, ToolCylinder
 from twin.tool_library.quantities import LibraryUnit, length_mm, unit_named

@@ -1,0 +1,1 @@
+"""The formats of tool libraries, one module each: entries of a file to `RawTool`."""
