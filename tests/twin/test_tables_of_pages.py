@@ -21,3 +21,9 @@ def test_a_pages_tables_are_its_models_fields(name: str) -> None:
 
 def test_pages_have_tables() -> None:
     assert {"command-line.md", "compare.md", "identify.md", "job-file.md"} <= set(PAGES)
+
+
+def test_the_page_of_materials_has_every_row() -> None:
+    filled = runpy.run_path(str(ROOT / "tools" / "fill_materials.py"))["filled"]
+    page = (ROOT / "docs" / "materials.md").read_text("utf-8")
+    assert filled(page) == page, "python tools/fill_materials.py rewrites the page"

@@ -19,6 +19,7 @@ COMMANDS: Mapping[str, str] = {
     "info": "Print the contents of an archive: summary of the run, program, stock, tools, messages, attached files.",
     "export": "Write every force sample of a run as CSV or Parquet.",
     "compare": "Compare a measured force log with a run: errors, harmonics, report.",
+    "materials": "List cutting coefficients of materials with their sources, or print one of them.",
     "identify": "Find cutting coefficients from test cuts, with their errors.",
     "mesh": "Write the machined part as a triangle mesh.",
     "reach": "Find the material that tools cannot reach on a part: position, volume, thickness.",

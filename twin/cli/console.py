@@ -11,7 +11,7 @@ from rich.text import Text
 from gcode.cli.clean_console import CleanConsole
 from gcode.cli.console import results, say, say_json
 
-__all__ = ["errors", "fail", "print_json", "results", "say", "say_json", "warn"]
+__all__ = ["errors", "fail", "note", "print_json", "results", "say", "say_json", "warn"]
 
 
 def errors() -> CleanConsole:
@@ -23,6 +23,12 @@ def warn(message: str) -> None:
     """Print something that needs attention, if standard error takes it; the program goes on."""
     with contextlib.suppress(OSError):
         errors().print(Text.assemble(("warning:", "bold yellow"), " ", message))
+
+
+def note(message: str) -> None:
+    """Print something worth knowing that needs no action, if standard error takes it."""
+    with contextlib.suppress(OSError):
+        errors().print(Text.assemble(("note:", "bold"), " ", message))
 
 
 def fail(message: str) -> None:

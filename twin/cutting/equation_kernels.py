@@ -43,19 +43,28 @@ def edge_force(k: Coefficients, chip: float, db: float) -> EdgeForce:
 
         dF_t = (Ktc h + Kte) db    dF_r = (Krc h + Kre) db    dF_a = (Kac h + Kae) db
 
-    With exponents (O. Kienzle: kc = kc1.1 h^-mc) the chip h is h^(1 - mt), h^(1 - mr), h^(1 - ma), h in mm.
-
     Args:
         chip: uncut chip thickness h, mm.
         db: length of the piece along the meridian, mm: dz / sin(kappa) where that is finite.
     """
-    if k.mt != 0.0 or k.mr != 0.0 or k.ma != 0.0:
-        return EdgeForce(
-            (k.Ktc * chip ** (1.0 - k.mt) + k.Kte) * db,
-            (k.Krc * chip ** (1.0 - k.mr) + k.Kre) * db,
-            (k.Kac * chip ** (1.0 - k.ma) + k.Kae) * db,
-        )
     return EdgeForce((k.Ktc * chip + k.Kte) * db, (k.Krc * chip + k.Kre) * db, (k.Kac * chip + k.Kae) * db)
+
+
+@njit
+def kienzle_force(k: Coefficients, chip: float, db: float) -> EdgeForce:
+    """Force of a piece of edge under Kienzle's law, kc = kc1.1 h^-m, with edge terms.
+
+        dF_t = (Ktc h^(1 - mt) + Kte) db    dF_r = (Krc h^(1 - mr) + Kre) db    dF_a = (Kac h^(1 - ma) + Kae) db
+
+    Args:
+        chip: uncut chip thickness h, above 0, mm.
+        db: as in `edge_force`.
+    """
+    return EdgeForce(
+        (k.Ktc * chip ** (1.0 - k.mt) + k.Kte) * db,
+        (k.Krc * chip ** (1.0 - k.mr) + k.Kre) * db,
+        (k.Kac * chip ** (1.0 - k.ma) + k.Kae) * db,
+    )
 
 
 @njit

@@ -16,6 +16,7 @@ from twin.cutting.edge_arrays import EdgeArrays, Flutes, RowAngles
 from twin.cutting.equation_kernels import (
     Coefficients,
     edge_force,
+    kienzle_force,
     normal_along_feed,
     to_machine_axes,
     uncut_chip_thickness,
@@ -120,6 +121,7 @@ def sum_forces(
     angle, feed_part, runout_step_mm = flutes.angle, flutes.feed_part, flutes.runout_step_mm
     cos_row, sin_row = rows.cos, rows.sin
     cos_kappa, sin_kappa, radius, length = edges.cos_kappa, edges.sin_kappa, edges.radius, edges.length
+    kienzle = k.mt != 0.0 or k.mr != 0.0 or k.ma != 0.0
     samples = min(len(out), step.period)
     shift = 1 if step.sense > 0.0 else -1
     column = np.empty(count + 1)
@@ -147,7 +149,8 @@ def sum_forces(
                         out_by = runout_step_mm[m, back, i] * sin_k
                         chip = min(chip, uncut_chip_thickness(feed_per_tooth, n_dot_f, out_by))
                     if chip > step.least_chip:
-                        force = edge_force(k, chip, engaged * length[i])
+                        db = engaged * length[i]
+                        force = kienzle_force(k, chip, db) if kienzle else edge_force(k, chip, db)
                         x, y, z = to_machine_axes(force, step.sense, cos_t, sin_t, cos_k, sin_k)
                         out[s, 0] += x
                         out[s, 1] += y

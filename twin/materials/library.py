@@ -5,13 +5,15 @@ from __future__ import annotations
 import difflib
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 from types import MappingProxyType
+from typing import Any
 
 from twin.errors import MaterialError
 from twin.materials.material import Material
+from twin.materials.oblique import Orthogonal
 
 _MOST_NEAR = 5
 
@@ -24,8 +26,39 @@ def load_materials() -> Mapping[str, Material]:
         >>> for name, row in twin.load_materials().items():
         ...     print(name, row.Ktc, row.source)
     """
-    rows = tomllib.loads(files("twin").joinpath("data/materials.toml").read_text("utf-8"))["materials"]
-    return MappingProxyType({row.name: row for row in map(Material.model_validate, rows)})
+    table = tomllib.loads(files("twin").joinpath("data/materials.toml").read_text("utf-8"))
+    rows = [*map(published_row, table["materials"]), *group_rows(table["groups"])]
+    return MappingProxyType({row.name: row for row in rows})
+
+
+def published_row(values: Mapping[str, Any]) -> Material:
+    """A row of the table; coefficients per chip area computed where it has orthogonal tests."""
+    own = dict(values)
+    if "orthogonal" in own:
+        own |= zip(("Ktc", "Krc", "Kac"), Orthogonal.model_validate(own["orthogonal"]).coefficients(), strict=True)
+    return Material.model_validate(own)
+
+
+def group_rows(groups: Mapping[str, Any]) -> Iterator[Material]:
+    """The material groups of VDI 3323 under Kienzle's law, with the ratios of the radial and axial force."""
+    shared = {key: groups[key] for key in ("source", "tool", "chip_range_mm", "caution")}
+    for number, iso_group, kc, mc, hardness, text in groups["rows"]:
+        yield Material.model_validate(
+            {
+                "name": f"VDI 3323 group {number}",
+                "aliases": (f"{iso_group}{number}", f"VDI {number}", text),
+                "iso_group": iso_group,
+                "kind": "order of magnitude",
+                "law": "kienzle",
+                "Ktc": kc,
+                "Krc": kc * groups["radial_ratio"],
+                "Kac": kc * groups["axial_ratio"],
+                **dict.fromkeys(("Kte", "Kre", "Kae"), 0.0),
+                **dict.fromkeys(("mt", "mr", "ma"), mc),
+                "note": f"{text}{f', {hardness} HB' if hardness else ''}. {groups['note']}",
+                **shared,
+            }
+        )
 
 
 def find_material(name: str) -> Material:
@@ -44,13 +77,26 @@ def find_material(name: str) -> Material:
     return found
 
 
+def is_name(text: str) -> bool:
+    """Whether a text is a name or alias of a material."""
+    return key_of(text) in _by_key()
+
+
+def matching(text: str) -> list[Material]:
+    """Rows of an ISO group, by its letter; or rows with a text in a name, the source, the tool or the kind."""
+    key, rows = key_of(text), load_materials().values()
+    if key in {row.iso_group.casefold() for row in rows}:
+        return [row for row in rows if row.iso_group.casefold() == key]
+    return [row for row in rows if any(key in key_of(held) for held in (*row.names, row.source, row.tool, row.kind))]
+
+
 def near_names(name: str) -> str:
     """Names of the table that are near to a wrong one, in one line."""
     key = key_of(name)
     keys = difflib.get_close_matches(key, _by_key(), n=2 * _MOST_NEAR, cutoff=0.5)
     inside = [k for k in _by_key() if key and (key in k or k in key)]
     near = _unique(_by_key()[k].name for k in [*inside, *keys])[:_MOST_NEAR]
-    return f"did you mean {', '.join(near)}?" if near else f"e.g. {', '.join(list(load_materials())[:_MOST_NEAR])}"
+    return f"did you mean {'; '.join(near)}?" if near else f"e.g. {'; '.join(list(load_materials())[:_MOST_NEAR])}"
 
 
 def key_of(name: str) -> str:

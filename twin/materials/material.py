@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field, Strict, model_validator
 
+from twin.materials.oblique import Orthogonal
 from twin.settings.table import Table
 
 Interval: TypeAlias = Annotated[tuple[float, float], Strict(False)]
@@ -41,6 +42,7 @@ class Material(Table):
         chip_range_mm: lowest and highest uncut chip thickness of the tests, mm; None where the source has none.
         speed_range_m_min: lowest and highest cutting speed of the tests, m/min; None where the source has none.
         tool: diameter, teeth, helix, cutting material and coating, as far as the source states them.
+        orthogonal: results of orthogonal tests, from which the coefficients per chip area were computed.
         uncertainty: as published.
         note: conversions, assumptions, and whatever else a user of the numbers should know.
         caution: printed with the warnings of every run that uses the row, empty for none.
@@ -64,6 +66,7 @@ class Material(Table):
     chip_range_mm: Interval | None = None
     speed_range_m_min: Interval | None = None
     tool: Text
+    orthogonal: Orthogonal | None = None
     uncertainty: Text = "not published"
     note: str = ""
     caution: str = ""

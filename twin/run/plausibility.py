@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from twin.record import NcEvent, Record, RunHeader, RunSummary, Step
+from twin.run.material_range import MaterialRange
 
 #: Feed per tooth above this part of the tool's radius; feeds of high-feed cutters reach a fifth of it.
 _LARGE_CHIP = 0.25
@@ -44,16 +45,19 @@ class Plausibility:
         self._doubts: dict[tuple[str, int], _Doubt] = {}
         self._checked: tuple[int, int, float, float, bool] | None = None
         self._states_units = False
+        self._range = MaterialRange()
         self._low, self._high = [float("inf")] * 2, [float("-inf")] * 2
 
     def take(self, record: Record) -> None:
         """Take one record."""
         if isinstance(record, Step):
             self._step(record)
+            self._range.step(record)
         elif isinstance(record, NcEvent):
             self._states_units = self._states_units or (record.kind == "block" and bool(_UNITS.search(record.text)))
         elif isinstance(record, RunHeader):
             self._header(record)
+            self._range.header(record)
 
     def _header(self, header: RunHeader) -> None:
         self._parameters = header.parameters
@@ -136,6 +140,7 @@ class Plausibility:
         for doubt in self._doubts.values():
             more = f" (the most of {doubt.lines} such motions)" if doubt.lines > 1 else ""
             yield f"line {doubt.line}: {doubt.text}{more}"
+        yield from self._range.warnings()
         if summary.complete:
             yield from self._units(summary)
             yield from self._no_force(summary)

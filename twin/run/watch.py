@@ -93,7 +93,7 @@ class Watch:
 
     def warnings(self, summary: RunSummary) -> list[str]:
         """Warnings for the user, one line each."""
-        return [*self._collided(summary), *self.doubts(summary), *self._without_source(), *self._without_effect()]
+        return [*self._collided(summary), *self.doubts(summary), *self._on_coefficients(), *self._without_effect()]
 
     def doubts(self, summary: RunSummary) -> list[str]:
         """The warnings that are errors in a strict replay: nothing was cut, or numbers are not plausible."""
@@ -138,12 +138,17 @@ class Watch:
                 "check stock, machine.offsets and the tools' length_mm in the job"
             )
 
-    def _without_source(self) -> Iterator[str]:
+    def _on_coefficients(self) -> Iterator[str]:
+        """Coefficients without a source, and the cautions that come with others."""
         parameters = self.header.parameters if self.header is not None else {}
         tables = (key.removesuffix(".Ktc") for key in parameters if key.endswith("cutting.Ktc"))
         for table in tables:
             if f"{table}.source" not in parameters:
                 yield f"{table}.source is not given; state the source of the coefficients"
+            if f"{table}.caution" in parameters:
+                name = parameters.get(f"{table}.material")
+                which = f'{table}.material = "{name}"' if name else table
+                yield f"{which}: {parameters[f'{table}.caution']}"
 
     def _without_effect(self) -> Iterator[str]:
         for text, (count, line) in list(self._notices.items())[:_MOST_NOTICES]:

@@ -7,8 +7,8 @@ from typing import Any
 
 import jsonschema
 import pytest
+from support.job_files import NOTHING, job_data
 
-from tests.support.job_files import NOTHING, job_data
 from twin.errors import JobError
 from twin.job import Job, job_from_dict, job_schema
 from twin.materials import find_material

@@ -13,6 +13,7 @@ from twin.cli import exit_codes
 
 if TYPE_CHECKING:
     from twin.cli.commands.replay_work import Outcome
+    from twin.job import Job
 
 
 class Engine(StrEnum):
@@ -64,6 +65,14 @@ def replay(
     no_forces: Annotated[
         bool, typer.Option("--no-forces", help="Compute no forces, even if the job has cutting coefficients.")
     ] = False,
+    material: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Material whose cutting coefficients all tools use, in place of the job's; see twin materials.",
+            show_default=False,
+        ),
+    ] = None,
     engine: Annotated[
         Engine | None,
         typer.Option(help="Geometry engine: fast, or the slow reference; the job's if not given.", show_default=False),
@@ -109,6 +118,7 @@ def replay(
     from twin.sinks.outputs import opened
 
     job = load_job(job_file)
+    job = job if material is None else _with_material(job, material, quiet=quiet)
     job = job.without_forces() if no_forces else job
     job = job.with_simulation(store=engine.value) if engine is not None else job
     job = job.with_program(**_program_values(dialect, tool, m_code, job.program.m_codes))
@@ -121,6 +131,17 @@ def replay(
         _print_summary(outcome, {"archive": mcap, "recording": rrd}, job.output.force_on)
     _print_warnings(outcome, strict=strict)
     raise typer.Exit(_exit_code(outcome, strict=strict))
+
+
+def _with_material(job: Job, name: str, *, quiet: bool) -> Job:
+    """The job with a material's coefficients, and a note where they replace others."""
+    changed = job.with_material(name)
+    if job.forces and not quiet:
+        from twin.cli.console import note
+
+        material = changed.cutting.material if changed.cutting is not None else name
+        note(f"--material: the coefficients of {material} replace those of the job")
+    return changed
 
 
 def _program_values(
