@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 from support.job_files import job_data
-from twin.cli.show.watch import Watch
 
 from twin.job import job_from_dict
 from twin.materials import find_material
 from twin.record import RunSummary, Step
+from twin.run.watch import Watch
 from twin.simulation.replay import Replay
 
 SLOT = "T1 M6\nS3600 M3\nG54 G0 X-6 Y15 Z5\nG1 Z-2 F600\nX30\nM30\n"
