@@ -1,7 +1,11 @@
 """Settings for the whole suite."""
 
+import atexit
 import os
+import shutil
 import signal
+import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -9,6 +13,15 @@ from hypothesis import settings
 
 #: More processes than this spend their time compiling the same kernels.
 MOST_PROCESSES = 8
+
+# before numpy is imported: matrices are small here, and threads of linear algebra would wait for each other busily
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# where Python may not keep byte code next to the sources, the many processes of one run still share it
+if sys.dont_write_bytecode:
+    sys.dont_write_bytecode, sys.pycache_prefix = False, tempfile.mkdtemp(prefix="byte-code-")
+    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    atexit.register(shutil.rmtree, sys.pycache_prefix, ignore_errors=True)
 
 # kernels compile during the first examples; machines differ in speed
 settings.register_profile("steady", deadline=None)
