@@ -15,6 +15,7 @@ from twin.arrays import FloatArray
 from twin.cutting.edge_arrays import EdgeArrays, Flutes, RowAngles
 from twin.cutting.equation_kernels import (
     Coefficients,
+    EdgeForce,
     edge_force,
     kienzle_force,
     normal_along_feed,
@@ -161,6 +162,69 @@ def sum_forces(
     for s in range(samples, len(out)):
         for c in range(4):
             out[s, c] = out[s - step.period, c]
+
+
+@njit
+def sum_unit_forces(
+    step: Step,
+    share: FloatArray,
+    turn: FloatArray,
+    flutes: Flutes,
+    edges: EdgeArrays,
+    rows: RowAngles,
+    out: FloatArray,
+) -> None:
+    """Forces on the tool that `sum_forces` finds when one coefficient is 1 and the others are 0, all in one pass.
+
+    Args:
+        share, turn: the engagement map, shape (rows, elements).
+        out: shape (samples, 3, 6): Fx, Fy, Fz, for each coefficient in the order of `Coefficients`.
+    """
+    count, elements = share.shape
+    teeth, backs = flutes.feed_part.shape
+    samples = min(len(out), step.period)
+    shift = 1 if step.sense > 0.0 else -1
+    column = np.empty(count + 1)
+    for s in range(samples):
+        for axis in range(3):
+            for c in range(6):
+                out[s, axis, c] = 0.0
+    for i in range(elements):
+        if not _gather(share, i, column):
+            continue
+        cos_k, sin_k = edges.cos_kappa[i], edges.sin_kappa[i]
+        for m in range(teeth):
+            theta = -step.first_rad + step.sense * flutes.angle[m, i]
+            row, fraction = _row_of(theta, count)
+            cos_0, sin_0 = math.cos(theta), math.sin(theta)
+            for s in range(samples):
+                engaged = _between_rows(column[row], column[row + 1], fraction, turn[row, i])
+                row = _next_row(row, shift, count)
+                if engaged > 0.0:
+                    cos_s, sin_s = rows.cos[s % count], -step.sense * rows.sin[s % count]
+                    cos_t = cos_0 * cos_s - sin_0 * sin_s
+                    sin_t = sin_0 * cos_s + cos_0 * sin_s
+                    n_dot_f = normal_along_feed(cos_t * step.feed_x + sin_t * step.feed_y, step.feed_z, sin_k, cos_k)
+                    chip = math.inf
+                    for back in range(backs):
+                        feed_per_tooth = flutes.feed_part[m, back] * step.feed_per_rev
+                        out_by = flutes.runout_step_mm[m, back, i] * sin_k
+                        chip = min(chip, uncut_chip_thickness(feed_per_tooth, n_dot_f, out_by))
+                    if chip > step.least_chip:
+                        db = engaged * edges.length[i]
+                        for c in range(6):
+                            size = db if c % 2 else chip * db
+                            force = EdgeForce(
+                                size if c < 2 else 0.0, size if 1 < c < 4 else 0.0, size if c > 3 else 0.0
+                            )
+                            x, y, z = to_machine_axes(force, step.sense, cos_t, sin_t, cos_k, sin_k)
+                            out[s, 0, c] += x
+                            out[s, 1, c] += y
+                            out[s, 2, c] += z
+    for s in range(samples, len(out)):
+        for axis in range(3):
+            for c in range(6):
+                out[s, axis, c] = out[s - step.period, axis, c]
 
 
 @helper

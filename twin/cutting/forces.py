@@ -17,7 +17,7 @@ from twin.cutting.coefficients import CuttingCoefficients
 from twin.cutting.edge_arrays import Flutes
 from twin.cutting.engagement import EngagementMap, EngagementMaps, edge_arrays, row_angles
 from twin.cutting.equation_kernels import Coefficients
-from twin.cutting.force_kernels import Steps, sum_forces_of_steps
+from twin.cutting.force_kernels import Step, Steps, sum_forces_of_steps, sum_unit_forces
 from twin.tolerance import Tolerance
 from twin.tools.edges import CuttingEdges
 
@@ -58,6 +58,28 @@ class ForceModel:
             [spindle_rad], np.array([float(sense)]), feed[None, :], np.array([feed_per_rev_mm]), maps
         )
         return found[0]
+
+    def unit_forces(
+        self, spindle_rad: FloatArray, sense: int, feed: FloatArray, feed_per_rev_mm: float, engagement: EngagementMap
+    ) -> FloatArray:
+        """Forces for each coefficient being 1 and the others 0, whatever those of the model; see `forces`.
+
+        Returns:
+            Shape (n, 3, 6): Fx, Fy, Fz on the tool per unit of the coefficients, in the order of `Coefficients`.
+        """
+        out = np.empty((len(spindle_rad), 3, len(Coefficients._fields)))
+        step = Step(
+            first_rad=float(spindle_rad[0]),
+            sense=float(sense),
+            feed_x=float(feed[0]),
+            feed_y=float(feed[1]),
+            feed_z=float(feed[2]),
+            feed_per_rev=feed_per_rev_mm,
+            period=self._period,
+            least_chip=self._least_chip * feed_per_rev_mm,
+        )
+        sum_unit_forces(step, engagement.share, engagement.turn, self._flutes, self._edges, self._rows, out)
+        return out
 
     def forces_of_steps(
         self,

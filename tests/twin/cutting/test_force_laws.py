@@ -24,6 +24,7 @@ from twin.workpiece.trislice import CellSlices
 TOLERANCE = Tolerance.for_pitch(0.2)
 COEFFICIENTS = CuttingCoefficients(Ktc=800.0, Kte=20.0, Krc=200.0, Kre=30.0, Kac=150.0, Kae=5.0, source="test")
 NOTHING = SweptVolume([])
+UNITS = ("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae")
 REVOLUTION = np.radians(np.arange(360.0))
 
 
@@ -52,6 +53,24 @@ def test_zero_helix_slot_has_the_closed_form_means() -> None:
     assert mean[0] == pytest.approx(-(n * a / 4 * k["Krc"] * chip + n * a / math.pi * k["Kre"]), rel=2e-3)
     assert mean[1] == pytest.approx(n * a / 4 * k["Ktc"] * chip + n * a / math.pi * k["Kte"], rel=2e-3)
     assert mean[2] == pytest.approx(-(n * a / math.pi * k["Kac"] * chip + n * a / 2 * k["Kae"]), rel=2e-3)
+
+
+@pytest.mark.parametrize("runout_mm", [0.0, 0.01])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_forces_per_unit_of_the_coefficients_are_those_of_a_pass_for_each(runout_mm: float, sense: int) -> None:
+    shape, feed = tool_shape("bull", 8.0, 4.0, 1.0), np.array([0.6, 0.0, -0.8])
+    edges = dataclasses.replace(cutting_edges(shape, teeth=2, helix_deg=30.0, axial_step_mm=0.5), runout_mm=runout_mm)
+    tip = np.array([6.0, 0.0, -1.0])
+    engaged = Engager(shape, edges, 36, "majority", TOLERANCE).engage(
+        tip, feed, 10.0, 0.05, block((0, -5, -4), (12, 5, 0), 0.5), NOTHING
+    )
+    assert engaged is not None
+    spindle = sense * np.radians(np.arange(0.0, 720.0, 10.0))
+    units = [CuttingCoefficients(**dict(zip(UNITS, row, strict=True)), source="unit") for row in np.eye(6).tolist()]
+    passes = [ForceModel(edges, k, 36, TOLERANCE).forces(spindle, sense, feed, 0.1, engaged) for k in units]
+    found = ForceModel(edges, COEFFICIENTS, 36, TOLERANCE).unit_forces(spindle, sense, feed, 0.1, engaged)
+    assert np.abs(found).max() > 0.0
+    assert np.array_equal(found, np.stack(passes, axis=2)[:, :3])
 
 
 @pytest.mark.parametrize("teeth", [1, 2, 3, 4])

@@ -102,12 +102,8 @@ def response(cut: StraightPass, rows: int = ROWS) -> FloatArray:
     edges = _edges(cut, max(8, min(_MOST_ELEMENTS, math.ceil(cut.axial_depth_mm / _RESPONSE_STEP_MM))))
     engaged = _map(cut, edges, rows)
     spindle: FloatArray = np.asarray((np.arange(rows) + 0.5) * (2.0 * math.pi / rows), dtype=np.float64)
-    feed, out = np.array([1.0, 0.0, 0.0]), np.empty((rows, 3, len(NAMES)))
-    tolerance = Tolerance.for_pitch(_RESPONSE_STEP_MM)
-    for k in range(len(NAMES)):
-        model = ForceModel(edges, unit_coefficients(k), rows, tolerance)
-        out[:, :, k] = model.forces(spindle, 1, feed, cut.feed_per_rev_mm, engaged)[:, :3]
-    return out
+    model = ForceModel(edges, unit_coefficients(0), rows, Tolerance.for_pitch(_RESPONSE_STEP_MM))
+    return model.unit_forces(spindle, 1, np.array([1.0, 0.0, 0.0]), cut.feed_per_rev_mm, engaged)
 
 
 def unit_coefficients(index: int) -> CuttingCoefficients:
