@@ -23,6 +23,8 @@ def test_a_text_filters_and_a_name_prints_the_row(capsys: pytest.CaptureFixture[
     found = json.loads(capsys.readouterr().out)
     assert [row["name"] for row in found] == [f"VDI 3323 group {n}" for n in range(15, 21)]
     assert {"name", "law", "source", "chip_range_mm", "speed_range_m_min"} <= set(found[0])
+    assert run(["materials", "titanium", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)[0]["name"] == "Ti6Al4V"
     assert run(["materials", "s", "--json"]) == 0
     assert {row["iso_group"] for row in json.loads(capsys.readouterr().out)} == {"S"}
     assert run(["materials", "ti-6al-4v"]) == 0

@@ -47,6 +47,7 @@ def group_rows(groups: Mapping[str, Any]) -> Iterator[Material]:
             {
                 "name": f"VDI 3323 group {number}",
                 "aliases": (f"{iso_group}{number}", f"VDI {number}", text),
+                "family": text,
                 "iso_group": iso_group,
                 "kind": "order of magnitude",
                 "law": "kienzle",
@@ -83,11 +84,15 @@ def is_name(text: str) -> bool:
 
 
 def matching(text: str) -> list[Material]:
-    """Rows of an ISO group, by its letter; or rows with a text in a name, the source, the tool or the kind."""
+    """Rows of an ISO group, by its letter; or rows with a text in a name, family, source, tool or kind."""
     key, rows = key_of(text), load_materials().values()
     if key in {row.iso_group.casefold() for row in rows}:
         return [row for row in rows if row.iso_group.casefold() == key]
-    return [row for row in rows if any(key in key_of(held) for held in (*row.names, row.source, row.tool, row.kind))]
+    return [
+        row
+        for row in rows
+        if any(key in key_of(held) for held in (*row.names, row.family, row.source, row.tool, row.kind))
+    ]
 
 
 def near_names(name: str) -> str:
@@ -100,8 +105,8 @@ def near_names(name: str) -> str:
 
 
 def key_of(name: str) -> str:
-    """A name as it is compared: without case, blanks, hyphens and underscores."""
-    return re.sub(r"[\s_\-\u2010-\u2015]+", "", name).casefold()
+    """A name as it is compared: without case, blanks, hyphens and underscores, and in one spelling of aluminium."""
+    return re.sub(r"[\s_\-\u2010-\u2015]+", "", name).casefold().replace("aluminum", "aluminium")
 
 
 @cache

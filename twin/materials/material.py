@@ -31,6 +31,7 @@ class Material(Table):
     Attributes:
         name: its name in the table; case, blanks and hyphens do not matter where it is asked for.
         aliases: other names of it.
+        family: what kind of material it is, e.g. ``aluminium alloy``.
         iso_group: application group of ISO 513: P steel, M stainless steel, K cast iron, N non-ferrous metals,
             S superalloys and titanium, H hardened materials.
         kind: ``published test``, or ``order of magnitude`` for a catalogue value by material group.
@@ -50,6 +51,7 @@ class Material(Table):
 
     name: Text
     aliases: Names = ()
+    family: Text
     iso_group: IsoGroup
     kind: Kind = "published test"
     law: Law = "linear-edge"

@@ -7,21 +7,38 @@ import re
 from itertools import combinations
 
 import pytest
+from pydantic import ValidationError
 
 from twin.errors import MaterialError
 from twin.materials import Material, find_material, load_materials
 from twin.materials.library import key_of
 
-ROWS = list(load_materials().values())
+ROWS: list[Material] = list(load_materials().values())
 
 
-@pytest.mark.parametrize("row", ROWS, ids=[row.name for row in ROWS])
-def test_a_row_has_a_source_that_can_be_looked_up(row: Material) -> None:
-    assert re.search(r"doi 10\.\d{4,}/\S+|github\.com/\S+|p\. \d+|PMC\d+", row.source), row.source
-    numbers = (row.Ktc, row.Kte, row.Krc, row.Kre, row.Kac, row.Kae, row.mt, row.mr, row.ma)
-    assert all(math.isfinite(number) for number in numbers)
-    for interval in (row.chip_range_mm, row.speed_range_m_min):
-        assert interval is not None or row.caution
+def test_a_row_has_a_source_that_can_be_looked_up_and_sound_numbers() -> None:
+    for row in ROWS:
+        assert re.search(r"doi 10\.\d{4,}/\S+|github\.com/\S+|p\. \d+", row.source), row.name
+        numbers = (row.Ktc, row.Kte, row.Krc, row.Kre, row.Kac, row.Kae, row.mt, row.mr, row.ma)
+        assert all(math.isfinite(number) for number in numbers), row.name
+        assert 100.0 < row.Ktc < 10_000.0 and abs(row.Krc) < row.Ktc and abs(row.Kac) < row.Ktc, row.name
+        assert row.caution or (row.chip_range_mm and row.speed_range_m_min), row.name
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        ({"caution": ""}, "expected a text for a row without chip_range_mm"),
+        ({"chip_range_mm": [0.2, 0.1]}, "chip_range_mm"),
+        ({"mt": 0.2}, "expected only with law"),
+        ({"kind": "order of magnitude", "caution": ""}, "caution"),
+        ({"source": " "}, "source"),
+    ],
+)
+def test_an_unsound_row_is_refused(change: dict[str, object], problem: str) -> None:
+    row = find_material("Al7075-T6").model_dump(exclude_none=True)
+    with pytest.raises(ValidationError, match=problem):
+        Material.model_validate({**row, **change})
 
 
 def test_no_two_rows_share_a_name() -> None:

@@ -65,6 +65,7 @@ def row_items(row: Material) -> Iterator[tuple[str, str]]:
     yield "name", row.name
     if row.aliases:
         yield "also", "; ".join(row.aliases)
+    yield "family", row.family
     yield "ISO 513 group", row.iso_group
     yield "kind", row.kind
     yield "law", "linear: F = (K h + Ke) b" if row.law == "linear-edge" else "kienzle: F = K h^(1 - m) b, h in mm"
@@ -100,5 +101,5 @@ def row_object(row: Material) -> dict[str, Any]:
 
 def listing_objects(rows: Sequence[Material]) -> list[dict[str, Any]]:
     """The rows of the list for JSON: name, law, source and range."""
-    keys = {"name", "aliases", "iso_group", "kind", "law", "source", "chip_range_mm", "speed_range_m_min"}
+    keys = {"name", "aliases", "family", "iso_group", "kind", "law", "source", "chip_range_mm", "speed_range_m_min"}
     return [row.model_dump(mode="json", include=keys) for row in rows]
