@@ -5,9 +5,7 @@
 
 from twin.job.job_file import (
     RAPIDS,
-    Box,
     Cutting,
-    Cylinder,
     Job,
     JobFile,
     Machine,
@@ -15,11 +13,11 @@ from twin.job.job_file import (
     Program,
     RigidPart,
     Simulation,
-    Stock,
     Tool,
     job_schema,
 )
 from twin.job.load import job_from_dict, load_job
+from twin.job.stock_keys import Box, Cylinder, Stock
 
 __all__ = [
     "RAPIDS",

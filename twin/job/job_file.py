@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import ConfigDict, Field, Strict
 
 from twin.errors import JobError
+from twin.job.stock_keys import Stock, WorkOffset
 from twin.materials import find_material
 from twin.measured.settings import CompareSettings, LogFile
 from twin.settings.check import checked
@@ -19,11 +20,10 @@ from twin.settings.force_on import ForceOn
 from twin.settings.json_schema import toml_schema
 from twin.settings.table import FilePath, Key, Point, Table
 
-#: The keys of a stock, of which one is given.
-STOCKS = ("box_mm", "cylinder_mm", "stl")
 SixNumbers: TypeAlias = Annotated[tuple[float, float, float, float, float, float], Strict(False)]
 Interval: TypeAlias = Annotated[tuple[float, float], Strict(False)]
 _Coefficient: TypeAlias = Annotated[float, Key(unset="required, or that of the material")]
+_OF_LIBRARY = "required, or that of the library"
 _Exponent: TypeAlias = Annotated[float | None, Key(unset="0")]
 MCode: TypeAlias = Annotated[int, Strict(False), Field(ge=0)]
 Rows: TypeAlias = Annotated[tuple[Annotated[tuple[float, ...], Strict(False)], ...], Strict(False)]
@@ -36,7 +36,6 @@ RAPIDS: dict[str, RapidPath] = {
     "linuxcnc": "straight",
     "grbl": "straight",
 }
-WorkOffset: TypeAlias = Literal["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"]
 
 
 class Program(Table):
@@ -109,43 +108,6 @@ class Machine(Table):
     )
 
 
-class Box(Table):
-    """A box with its faces along the axes."""
-
-    min: Point = Field(description="lower corner, mm")
-    max: Point = Field(description="upper corner, mm")
-
-
-class Cylinder(Table):
-    """A cylinder along one of the axes."""
-
-    axis: Literal["x", "y", "z"] = Field(default="z", description="direction of the cylinder")
-    centre: Annotated[tuple[float, float], Strict(False)] = Field(
-        description="centre on the two other axes: [x, y] for axis z, [x, z] for y, [y, z] for x, mm"
-    )
-    diameter: float = Field(gt=0.0, description="diameter, mm")
-    min: float = Field(description="lower end along the axis, mm")
-    max: float = Field(description="upper end along the axis, mm")
-
-
-class Stock(Table):
-    """The material before the first cut: a box, a cylinder, or a solid from an STL file."""
-
-    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": [key]} for key in STOCKS]})
-
-    box_mm: Box | None = Field(default=None, description="box: { min = [x, y, z], max = [x, y, z] }, mm")
-    cylinder_mm: Cylinder | None = Field(
-        default=None, description='cylinder: { axis = "z", centre = [x, y], diameter = 50, min = -20, max = 0 }, mm'
-    )
-    stl: FilePath | None = Field(
-        default=None, description="STL file of a closed solid, relative to the job file's folder"
-    )
-    unit: Literal["mm", "inch", "m"] = Field(default="mm", description="unit of the STL file")
-    stl_scale: float = Field(default=1.0, gt=0.0, description="further factor on the STL file's points")
-    offset_mm: Point = Field(default=(0.0, 0.0, 0.0), description="shift of the STL file's points after scaling, mm")
-    wcs: WorkOffset = Field("G54", description="work offset in which the stock's coordinates are given")
-
-
 class RigidPart(Table):
     """A cylinder of a tool that does not cut."""
 
@@ -206,18 +168,39 @@ class Cutting(Table):
     )
 
 
+def _required_without_library(schema: dict[str, Any]) -> None:
+    """JSON Schema of a tool: all required keys, or a library with number or name."""
+    named = [{"required": ["number"]}, {"required": ["name"]}]
+    schema["anyOf"] = [{"required": ["from"], "anyOf": named}, {"required": schema.pop("required")}]
+
+
 class Tool(Table):
     """A tool: cutting part, then shank, then holder, upwards from the tip."""
 
-    number: int = Field(ge=1, description="tool number, the T word")
-    name: str = Field(default="", description="human-readable name")
-    kind: Literal["flat", "ball", "bull", "taper"] = Field(description="shape of the cutting part")
-    diameter_mm: float = Field(
+    model_config = ConfigDict(json_schema_extra=_required_without_library)
+
+    from_: Annotated[FilePath | None, Key(unset="none")] = Field(
+        default=None,
+        alias="from",
+        description="tool library, relative to the job file's folder; its tool of that number or name gives the keys "
+        "that are not given here",
+    )
+    library_unit: Annotated[Literal["mm", "inch"] | None, Key(unset="mm")] = Field(
+        default=None, description="unit of a library that states none, as LinuxCNC's: mm or inch"
+    )
+    number: Annotated[int, Key(unset=_OF_LIBRARY)] = Field(ge=1, description="tool number, the T word")
+    name: str = Field(default="", description="human-readable name; with from, the name of the tool in the library")
+    kind: Annotated[Literal["flat", "ball", "bull", "taper"], Key(unset=_OF_LIBRARY)] = Field(
+        description="shape of the cutting part"
+    )
+    diameter_mm: Annotated[float, Key(unset=_OF_LIBRARY)] = Field(
         gt=0.0, description="diameter of the cutting part; for a taper tool, diameter at the tip"
     )
-    teeth: int = Field(ge=1, le=100, description="number of flutes")
+    teeth: Annotated[int, Key(unset=_OF_LIBRARY)] = Field(ge=1, le=100, description="number of flutes")
     helix_deg: float = Field(default=0.0, gt=-90.0, lt=90.0, description="helix angle, right-hand positive")
-    flute_length_mm: float = Field(gt=0.0, le=1000.0, description="length of the cutting part, measured from the tip")
+    flute_length_mm: Annotated[float, Key(unset=_OF_LIBRARY)] = Field(
+        gt=0.0, le=1000.0, description="length of the cutting part, measured from the tip"
+    )
     corner_radius_mm: float | None = Field(
         default=None, gt=0.0, description="corner radius: required for bull, optional for taper, not for other kinds"
     )
@@ -247,6 +230,12 @@ class Tool(Table):
     )
     cutting: Annotated[Cutting | None, Key(unset="those of [cutting]")] = Field(
         default=None, description="coefficients for this tool"
+    )
+    origin: Annotated[str | None, Key(unset="the entry of the library")] = Field(
+        default=None, min_length=1, description="source of the sizes, e.g. a catalogue; archived with the run"
+    )
+    caution: Annotated[str | None, Key(unset="none, or assumptions on the library")] = Field(
+        default=None, min_length=1, description="text printed with the warnings of every run with the tool"
     )
 
 

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from twin.errors import JobError
 from twin.job.job_file import Job, JobFile
+from twin.job.library import with_library_tools
 from twin.job.material import with_materials
 from twin.job.rules import RULES
 from twin.settings.facts import Facts
@@ -52,7 +53,9 @@ def job_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") ->
 
 
 def _job(data: Mapping[str, Any], path: Path, text: str) -> Job:
-    data, problems = with_materials(data)
+    data, problems = with_library_tools(data, path.parent)
+    data, unknown = with_materials(data)
+    problems += unknown
     try:
         JobFile.model_validate(data)
     except ValidationError as error:

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TypeAlias
 
 from twin.job.facts import tools_of
-from twin.job.job_file import RAPIDS, STOCKS
+from twin.job.job_file import RAPIDS
 from twin.job.limits import LIMITS
+from twin.job.stock_keys import STOCKS
 from twin.job.tool_rules import TOOL_RULES
 from twin.settings.facts import Facts
 from twin.settings.problems import Location, Problem, key_path, wrong

@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from twin.errors import JobError, ToolError
+from twin.job.library import with_library_tools
 from twin.moldmaking.model import MoldFile, MoldJob
 from twin.settings.problems import Problem, missing, problems_of, wrong
 from twin.settings.toml_file import read_toml
@@ -47,11 +48,14 @@ def shape_of(job: MoldFile, number: int) -> ToolShape:
 
 
 def _job(data: Mapping[str, Any], path: Path) -> MoldJob:
+    data, unknown = with_library_tools(data, path.parent)
     try:
         file = MoldFile.model_validate(data)
     except ValidationError as error:
-        found = [str(p) for p in problems_of(error.errors(include_url=False), MoldFile)]
+        found = [str(p) for p in (*unknown, *problems_of(error.errors(include_url=False), MoldFile))]
         raise JobError(str(path), found) from error
+    if unknown:
+        raise JobError(str(path), [str(p) for p in unknown])
     problems = [*_tool_problems(file), *_stage_problems(file), *_stock_problems(file, path.parent)]
     if problems:
         raise JobError(str(path), [str(p) for p in problems])

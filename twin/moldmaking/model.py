@@ -10,7 +10,8 @@ from pydantic import Field, Strict, model_validator
 
 from twin.cam.passes.roughing import StageFeeds
 from twin.cam.path.machining_time import Dynamics
-from twin.job.job_file import Box, Tool
+from twin.job.job_file import Tool
+from twin.job.stock_keys import Box
 from twin.settings.table import FilePath, Key, Point, Table
 from twin.workpiece.solids.units import Unit
 

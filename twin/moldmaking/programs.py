@@ -86,4 +86,4 @@ def replay_tables(plan: MoldPlan, program: Path) -> dict[str, Any]:
 
 def _tool_table(tool: Tool) -> dict[str, Any]:
     table = tool.model_dump(mode="python", exclude_none=True, exclude_defaults=True)
-    return {key: value for key, value in table.items() if key != "cutting"}
+    return {key: value for key, value in table.items() if key not in ("cutting", "from_", "library_unit")}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -12,6 +13,7 @@ from twin.run.plausibility import Plausibility
 #: More collisions than this are counted and not kept.
 MOST_COLLISIONS = 1000
 _MOST_NOTICES = 5
+_TOOL_CAUTION = re.compile(r"tools\[\d+\]\.caution")
 
 
 @dataclass(slots=True, kw_only=True)
@@ -93,7 +95,8 @@ class Watch:
 
     def warnings(self, summary: RunSummary) -> list[str]:
         """Warnings for the user, one line each."""
-        return [*self._collided(summary), *self.doubts(summary), *self._on_coefficients(), *self._without_effect()]
+        remarks = (*self._on_coefficients(), *self._on_tools(), *self._without_effect())
+        return [*self._collided(summary), *self.doubts(summary), *remarks]
 
     def doubts(self, summary: RunSummary) -> list[str]:
         """The warnings that are errors in a strict replay: nothing was cut, or numbers are not plausible."""
@@ -149,6 +152,13 @@ class Watch:
                 name = parameters.get(f"{table}.material")
                 which = f'{table}.material = "{name}"' if name else table
                 yield f"{which}: {parameters[f'{table}.caution']}"
+
+    def _on_tools(self) -> Iterator[str]:
+        """Assumptions on the tools, as the job states them."""
+        parameters = self.header.parameters if self.header is not None else {}
+        for key, text in parameters.items():
+            if _TOOL_CAUTION.fullmatch(key):
+                yield f"tool {parameters.get(key.replace('.caution', '.number'))}: {text}"
 
     def _without_effect(self) -> Iterator[str]:
         for text, (count, line) in list(self._notices.items())[:_MOST_NOTICES]:

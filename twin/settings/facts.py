@@ -7,6 +7,7 @@ from typing import Any, get_args
 
 from pydantic import BaseModel
 
+from twin.settings.keys import fields_of
 from twin.settings.problems import Location
 
 
@@ -89,12 +90,13 @@ def default_of(model: type[BaseModel], location: Location) -> Any:
     for key in location[:-1]:
         if isinstance(key, int):
             continue
-        annotation = table.model_fields[key].annotation if key in table.model_fields else None
+        fields = fields_of(table)
+        annotation = fields[key].annotation if key in fields else None
         inner = next((a for a in (annotation, *get_args(annotation)) if _is_table(a)), None)
         if inner is None:
             return None
         table = inner
-    field = table.model_fields.get(str(location[-1]))
+    field = fields_of(table).get(str(location[-1]))
     return None if field is None or field.is_required() or field.default_factory else field.default
 
 

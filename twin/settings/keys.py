@@ -22,6 +22,11 @@ def key_of(field: FieldInfo) -> Key:
     return next((note for note in field.metadata if isinstance(note, Key)), Key())
 
 
+def fields_of(model: type[BaseModel]) -> dict[str, FieldInfo]:
+    """The fields of a table by key; a field's alias is its key where Python cannot have the name."""
+    return {field.alias or name: field for name, field in model.model_fields.items()}
+
+
 def bare(annotation: Any) -> Any:
     """A type without ``None`` as an alternative and without annotations."""
     while True:
@@ -72,7 +77,7 @@ def keys_table(model: type[BaseModel], without: type[BaseModel] = BaseModel) -> 
 
 
 def _rows(model: type[BaseModel]) -> Iterator[str]:
-    for name, field in model.model_fields.items():
+    for name, field in fields_of(model).items():
         default = key_of(field).unset or "required" if field.is_required() else default_text(field) or ""
         if default and not field.is_required() and default != key_of(field).unset:
             default = f"`{default}`"

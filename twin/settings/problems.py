@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from twin.settings.keys import bare
+from twin.settings.keys import bare, fields_of
 from twin.settings.toml_text import toml_value
 
 Location: TypeAlias = tuple[str | int, ...]
@@ -104,7 +104,7 @@ def _problem(location: Location, error: ErrorDetails, model: type[BaseModel]) ->
         return _unknown_key(location, get_args(annotation)[0])
     if error["type"] == "extra_forbidden":
         table, _ = _declared(location[:-1], model)
-        return unknown(location, table.model_fields)
+        return unknown(location, fields_of(table))
     if error["type"] == "value_error":
         reason = str(error["ctx"]["error"]).partition(": ")[2]
         return Problem(location, f" = {show(error['input'])}: {reason}")
@@ -129,7 +129,7 @@ def _declared(location: Location, model: type[BaseModel]) -> tuple[Any, FieldInf
     field: FieldInfo | None = None
     for key in location:
         if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-            field = annotation.model_fields[str(key)]
+            field = fields_of(annotation)[str(key)]
             annotation = bare(field.annotation)
         else:
             field = None
@@ -161,7 +161,7 @@ def allowed(annotation: Any, notes: Iterable[Any] = ()) -> str:
         keys = get_args(bare(arguments[0]))
         return "a table with keys " + ", ".join(keys) if keys else "a table by number"
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return "a table with keys " + ", ".join(annotation.model_fields)
+        return "a table with keys " + ", ".join(fields_of(annotation))
     if isinstance(annotation, type) and issubclass(annotation, PurePath):
         return "a file name"
     return " ".join([_WORDS[annotation], *_bounds(notes)])

@@ -12,6 +12,7 @@ from twin.archive.same_job import job_key
 from twin.arrays import frozen
 from twin.job import Job
 from twin.record import Attachment, RunHeader, ToolRecord
+from twin.settings.toml_text import toml_text
 from twin.version import __version__
 from twin.workpiece.trislice import TriSlices
 
@@ -20,7 +21,7 @@ _LIBRARIES = ("numpy", "numba", "pyclipper", "trimesh")
 
 def run_header(job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], planned_time_s: float) -> RunHeader:
     """Describe a run: stock, tools, settings with their defaults, versions, and the files it was made from."""
-    parameters = dict(_flat(job.model_dump(mode="json", exclude={"text", "path"})))
+    parameters = dict(_flat(job.model_dump(mode="json", exclude={"text", "path"}, by_alias=True)))
     parameters |= {f"version.{name}": version(name) for name in _LIBRARIES}
     parameters |= {"version.python": platform.python_version(), "version.twin": __version__}
     x, y, z = workpiece.pitch_mm
@@ -51,6 +52,11 @@ def _flat(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
 
 def _attachments(job: Job) -> Iterator[Attachment]:
     yield Attachment(name=job.path.name, media_type="application/toml", data=job.text.encode())
+    if any(tool.from_ is not None for tool in job.tools):
+        tools = [tool.model_dump(mode="json", exclude_none=True, exclude={"from_"}) for tool in job.tools]
+        yield Attachment(
+            name="tools_with_sizes.toml", media_type="application/toml", data=toml_text({"tools": tools}).encode()
+        )
     program = Path(job.program.file)
     yield Attachment(name=program.name, media_type="text/plain", data=program.read_bytes())
     if job.stock.stl is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 from twin.errors import ToolError, ToolLibraryError
@@ -121,6 +121,16 @@ class LibraryTool:
         """
         if self.obstacle:
             raise ToolLibraryError(f"{self.source}: {self.title} cannot be simulated: {self.obstacle}")
+        return self.job_keys()
+
+    def job_keys(self, kind: str | None = None) -> dict[str, Any]:
+        """The keys of `as_job_table`, of a tool that cannot be simulated too.
+
+        Args:
+            kind: kind to use the tool's sizes for, if not its own; corner radius and angle are then left out.
+        """
+        if kind is not None and kind != self.kind:
+            return replace(self, kind=kind, corner_radius_mm=None, taper_deg=None).job_keys()
         table: dict[str, Any] = {} if self.number is None else {"number": self.number}
         table |= {"name": self.name, "kind": self.kind}
         without = () if self.kind in ("bull", "taper") else ("corner_radius_mm", "taper_deg")

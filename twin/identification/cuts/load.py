@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from twin.errors import CutsError
 from twin.identification.cuts.cuts_file import Cuts, CutsFile
 from twin.identification.cuts.rules import RULES
+from twin.job.library import with_library_tools
 from twin.settings.facts import Facts
 from twin.settings.problems import Problem, problems_of, wrong
 from twin.settings.toml_file import read_toml
@@ -49,7 +50,7 @@ def cuts_from_dict(data: Mapping[str, Any], path: str | PathLike[str], fit: Mapp
     """
     path = Path(path)
     data = {**data, "fit": _merged(data.get("fit", {}), fit)}
-    problems: list[Problem] = []
+    data, problems = with_library_tools(data, path.parent)
     try:
         CutsFile.model_validate(data)
     except ValidationError as error:

@@ -1,0 +1,86 @@
+"""Tools of a job, a mold job or test cuts that name a library, filled with the sizes of its tool."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from twin.errors import ToolLibraryError
+from twin.settings.problems import Location, Problem, show
+from twin.tool_library import LibraryTool, LibraryUnit, ToolLibrary, read_tool_library
+from twin.tool_library.kinds import SIMULATED
+
+#: Values of a tool that is not found, so that the other tables are checked.
+_PLACEHOLDER = {"number": 1, "kind": "flat", "diameter_mm": 1.0, "teeth": 1, "flute_length_mm": 1.0}
+
+
+class _Libraries:
+    """The libraries of a job, each read once."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._read: dict[tuple[str, LibraryUnit], ToolLibrary] = {}
+
+    def read(self, name: str, unit: LibraryUnit) -> ToolLibrary:
+        """A library by its path in the job file."""
+        if (name, unit) not in self._read:
+            self._read[name, unit] = read_tool_library(self._folder / name, unit)
+        return self._read[name, unit]
+
+
+def with_library_tools(data: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], list[Problem]]:
+    """A file's tables with the tools of the libraries they name, and what is wrong with these.
+
+    A tool's own keys win.
+
+    Args:
+        data: the tables as in the file, right or wrong; tools are in the list ``tools`` or the table ``tool``.
+        folder: folder to which the libraries' paths are relative.
+    """
+    libraries, problems = _Libraries(folder), list[Problem]()
+    filled, tools = dict(data), data.get("tools")
+    if isinstance(tools, list | tuple):
+        filled["tools"] = [_filled(tool, ("tools", i), libraries, problems) for i, tool in enumerate(tools)]
+    if "tool" in data:
+        filled["tool"] = _filled(data["tool"], ("tool",), libraries, problems)
+    return filled, problems
+
+
+def _filled(table: Any, location: Location, libraries: _Libraries, problems: list[Problem]) -> Any:
+    """One tool; a placeholder where the library does not have it."""
+    name = table.get("from") if isinstance(table, Mapping) else None
+    if not isinstance(name, str | Path) or not str(name).strip():
+        return table
+    number, own_name, unit = table.get("number"), table.get("name"), table.get("library_unit") or "mm"
+    wrong_type = (number is not None and type(number) is not int) or not isinstance(own_name, str | None)
+    if wrong_type or unit not in ("mm", "inch"):
+        return {**_PLACEHOLDER, **table}
+    try:
+        tool = libraries.read(str(name), unit).find(number, own_name or None)
+        keys = _keys(tool, table)
+    except ToolLibraryError as error:
+        problems.append(Problem(location, f".from = {show(str(name))}: {error}"))
+        return {**_PLACEHOLDER, **table}
+    return {**keys, **_remarks(tool, table), **table}
+
+
+def _keys(tool: LibraryTool, own: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys that the library gives.
+
+    Raises:
+        ToolLibraryError: a tool that cannot be simulated, and whose kind the job does not give.
+    """
+    kind = own.get("kind")
+    if tool.kind not in SIMULATED and kind is None:
+        return tool.as_job_table()
+    return tool.job_keys(kind if isinstance(kind, str) else None)
+
+
+def _remarks(tool: LibraryTool, own: Mapping[str, Any]) -> dict[str, str]:
+    """The entry of the library that the sizes are from, and what was assumed of it."""
+    assumed = [note for note in tool.notes if not note.startswith("helix angle")]
+    if tool.helix_deg is None and "helix_deg" not in own:
+        assumed.append("helix_deg is not in the library, 0 is used")
+    assumed += tool.warnings
+    return {"origin": f"{tool.source}, {tool.title}", **({"caution": "; ".join(assumed)} if assumed else {})}
