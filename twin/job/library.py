@@ -52,9 +52,11 @@ def _filled(table: Any, location: Location, libraries: _Libraries, problems: lis
     name = table.get("from") if isinstance(table, Mapping) else None
     if not isinstance(name, str | Path) or not str(name).strip():
         return table
-    number, own_name, unit = table.get("number"), table.get("name"), table.get("library_unit") or "mm"
+    number, own_name = table.get("number"), table.get("name")
+    stated = table.get("library_unit")
+    unit: LibraryUnit | None = "inch" if stated == "inch" else "mm" if stated in (None, "mm") else None
     wrong_type = (number is not None and type(number) is not int) or not isinstance(own_name, str | None)
-    if wrong_type or unit not in ("mm", "inch"):
+    if wrong_type or unit is None:
         return {**_PLACEHOLDER, **table}
     try:
         tool = libraries.read(str(name), unit).find(number, own_name or None)

@@ -33,8 +33,8 @@ def read_bytes(path: Path) -> bytes:
     try:
         with path.open("rb") as file:
             data = file.read(_LARGEST + 1)
-    except OSError as error:
-        why = (error.strerror or str(error)).lower()
+    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
+        why = (getattr(error, "strerror", None) or str(error)).lower()
         raise ToolLibraryError(f"{path}: cannot be read: {why}; expected a tool library") from error
     if len(data) > _LARGEST:
         raise ToolLibraryError(f"{path}: larger than {_LARGEST // 1_000_000} MB; expected a tool library")
