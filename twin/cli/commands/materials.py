@@ -18,7 +18,7 @@ def materials(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON: one object, or a list of objects.")] = False,
 ) -> None:
-    """List the materials whose cutting coefficients are known, with their sources.
+    """List cutting coefficients of materials with their sources, or print one of them.
 
     A job uses a row with ``material = "NAME"`` in its table [cutting]; twin replay takes --material NAME. Rows of the
     kind "order of magnitude" are catalogue values by material group.
