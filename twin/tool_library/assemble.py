@@ -205,6 +205,10 @@ def _cone(found: _Checked) -> tuple[str, float | None, float | None, float | Non
         corner = min(corner, 0.5 * diameter)
     if wide is not None and diameter and taper:
         _end_cone(found, wide, diameter, corner, taper)
+    flutes = found.get("flutes")
+    if "top" not in found.sizes and diameter and taper and flutes is not None:
+        widest = diameter + 2.0 * flutes * math.tan(math.radians(taper))
+        found.sizes["top"] = Size(widest, f"largest diameter = {widest:.4g} mm")
     return "taper", diameter or None, corner, taper
 
 

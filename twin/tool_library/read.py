@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -22,6 +23,8 @@ from twin.tool_library.quantities import LibraryUnit
 from twin.tool_library.raw_tool import RawTool
 
 _ZIP = b"PK\x03\x04"
+#: The heading of a table, where a list of JSON has no word.
+_TOML = re.compile(r"\[\[?[A-Za-z_][\w.-]*\]")
 
 
 def read_tool_library(path: str | PathLike[str], unit: LibraryUnit = "mm") -> ToolLibrary:
@@ -57,7 +60,7 @@ def _read(data: bytes, path: Path, unit: LibraryUnit) -> tuple[str, list[Library
     if data.startswith(_ZIP):
         return _json_tools(json_of(unpacked(data, path), path), path)
     start = text_of(data[:400], path, legacy=True).lstrip("\ufeff \t\r\n")
-    if start[:1] in ("{", "["):
+    if start[:1] in ("{", "[") and not _TOML.match(start):
         return _json_tools(json_of(data, path), path)
     text = text_of(data, path, legacy=True)
     if is_tool_table(text):

@@ -28,6 +28,8 @@ _FEWEST = 2
 #: Lines above the headings, at most.
 _ABOVE = 20
 _NOTES = " | "
+#: Largest size of a cylinder, mm.
+_LARGEST_MM = 1e5
 _SEGMENT = re.compile(r"\s*H(\S+)\s+U(\S+)\s+L(\S+)\s*")
 
 
@@ -146,7 +148,7 @@ def _cylinders(text: str, what: str, unit: LibraryUnit, warnings: list[str]) -> 
     for piece in text.split("+") if text.strip() else []:
         try:
             diameter, length = (length_mm(size.strip(), unit) for size in re.split(r"[x×]", piece.strip()))
-            if not (0.0 < diameter <= 1000.0 and 0.0 < length <= 1000.0):
+            if not (0.0 < diameter <= _LARGEST_MM and 0.0 < length <= _LARGEST_MM):
                 raise ValueError
         except ValueError:
             warnings.append(f'{what} = "{cleaned(piece)}": expected diameter x length, e.g. 20 x 30')

@@ -1,0 +1,112 @@
+"""Tools of libraries as a table and as a JSON object."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from twin.number_format import plural
+from twin.tool_library import LibraryTool, ToolCylinder, ToolLibrary
+
+_NUMBERS = ("D", "corner", "taper, deg", "teeth", "flutes", "shank", "holder")
+#: Most remarks below a table.
+_MOST_REMARKS = 12
+
+
+def print_tools(console: Console, chosen: Iterable[tuple[ToolLibrary, Sequence[LibraryTool]]]) -> None:
+    """Print each library's tools as a table, and what was assumed below it."""
+    for library, tools in chosen:
+        if not tools:
+            continue
+        title = f"{library.path}: {plural(len(tools), 'tool')}, {library.format}; sizes in mm"
+        console.print(Text(title, style="bold"))
+        console.print(_table(tools))
+        remarks = [*_remarks(library, tools)]
+        for remark in remarks[:_MOST_REMARKS]:
+            console.print(Text(remark))
+        if len(remarks) > _MOST_REMARKS:
+            console.print(Text(f"and {plural(len(remarks) - _MOST_REMARKS, 'more remark')}; see --json"))
+
+
+def _table(tools: Sequence[LibraryTool]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("T", justify="right", no_wrap=True)
+    table.add_column("name", overflow="fold", ratio=1)
+    table.add_column("kind", no_wrap=True)
+    for head in _NUMBERS:
+        table.add_column(head, justify="right", no_wrap=True)
+    for tool in tools:
+        table.add_row(*_cells(tool), style="" if tool.simulated else "dim")
+    return table
+
+
+def _cells(tool: LibraryTool) -> list[str]:
+    sizes = (tool.diameter_mm, tool.corner_radius_mm, tool.taper_deg, tool.teeth, tool.flute_length_mm)
+    number = "" if tool.number is None else str(tool.number)
+    return [number, tool.name, tool.kind, *map(_size, sizes), _cylinder(tool.shank), _holder(tool.holder)]
+
+
+def _size(value: float | None) -> str:
+    return "" if value is None else f"{value:.5g}"
+
+
+def _cylinder(piece: ToolCylinder | None) -> str:
+    return "" if piece is None else f"{piece.diameter_mm:.4g} x {piece.length_mm:.4g}"
+
+
+def _holder(pieces: Sequence[ToolCylinder]) -> str:
+    """Largest diameter and length of all pieces."""
+    if not pieces:
+        return ""
+    largest, length = max(p.diameter_mm for p in pieces), sum(p.length_mm for p in pieces)
+    return f"{largest:.4g} x {length:.4g}"
+
+
+def _remarks(library: ToolLibrary, tools: Sequence[LibraryTool]) -> Iterator[str]:
+    """Reasons, assumptions and shared numbers, each once."""
+    for obstacle, count in Counter(tool.obstacle for tool in tools if tool.obstacle).items():
+        which = _which([tool for tool in tools if tool.obstacle == obstacle], count)
+        yield f"{which} cannot be simulated: {obstacle}"
+    notes = Counter(note for tool in tools for note in tool.notes)
+    for note, count in notes.items():
+        yield f"{_which([tool for tool in tools if note in tool.notes], count, len(tools))}: {note}"
+    for number, same in library.shared_numbers.items():
+        if any(tool.number == number for tool in tools):
+            yield f"number {number}: {len(same)} tools have it; a job names one by its name"
+
+
+def _which(tools: Sequence[LibraryTool], count: int, total: int = 0) -> str:
+    """A few tools by number and name, or how many there are."""
+    if count == total and count > 1:
+        return f"all {count} tools"
+    return ", ".join(tool.title for tool in tools) if count <= 3 else plural(count, "tool")
+
+
+def tools_object(chosen: Iterable[tuple[ToolLibrary, Sequence[LibraryTool]]]) -> dict[str, Any]:
+    """All tools as one JSON object."""
+    pairs = [(library, tool) for library, tools in chosen for tool in tools]
+    return {"tools": [_object(library, tool) for library, tool in pairs]}
+
+
+def _object(library: ToolLibrary, tool: LibraryTool) -> dict[str, Any]:
+    values = asdict(tool)
+    texts = {key: list(values.pop(key)) for key in ("notes", "warnings")}
+    source = values.pop("source")
+    return {
+        **values,
+        "holder": list(values["holder"]),
+        "simulated": tool.simulated,
+        "obstacle": tool.obstacle,
+        "missing": list(tool.missing),
+        **texts,
+        "file": str(library.path),
+        "format": library.format,
+        "source": source,
+    }
