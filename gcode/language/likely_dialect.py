@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import PurePath
 from typing import NamedTuple
 
@@ -126,39 +127,43 @@ def _weight(found: tuple[Fault, ...]) -> int:
 
 
 def _faults(program: Program) -> dict[str, tuple[Fault, ...]]:
-    places = []
+    lines: dict[str, int] = {}
     offset = 0
     for number in range(1, MOST_LINES + 1):
         if offset >= program.size:
             break
         text, offset = program.line_at(offset)
-        places.append(Place(file=program.file, line=number, text=text))
-    return {name: tuple(_faults_in(places, dialect)) for name, dialect in DIALECTS.items()}
+        lines.setdefault(text, number)
+    return {name: tuple(_faults_in(lines, name)) for name in DIALECTS}
 
 
-def _faults_in(places: list[Place], dialect: Dialect) -> list[Fault]:
+def _faults_in(lines: Mapping[str, int], dialect: str) -> list[Fault]:
+    """Faults of lines, each given with its number where it stands first."""
     found: dict[str, Fault] = {}
-    for place in places:
-        for fault in _faults_of(place, dialect):
-            found.setdefault(fault.text, fault)
+    for line, number in lines.items():
+        for text, weight in _faults_of(line, dialect):
+            found.setdefault(text, Fault(number, text, weight))
     return list(found.values())
 
 
-def _faults_of(place: Place, dialect: Dialect) -> list[Fault]:
-    if place.text.lstrip().startswith("$") and dialect.dollar_commands:
-        return []
+@lru_cache(maxsize=2048)
+def _faults_of(line: str, name: str) -> tuple[tuple[str, int], ...]:
+    """Text of a line that a dialect does not have, and its weight; kept, for programs repeat their lines."""
+    dialect = DIALECTS[name]
+    if line.lstrip().startswith("$") and dialect.dollar_commands:
+        return ()
     try:
-        blocks = parse_blocks(place, dialect)
+        blocks = parse_blocks(Place(file="", line=1, text=line), dialect)
     except GcodeError as error:
         start = max(error.place.column - 1, 0)
-        return [Fault(place.line, place.text[start:].strip()[:24] or place.text.strip()[:24], _FOREIGN)]
-    return [fault for block in blocks for fault in _foreign_words(block, dialect)]
+        return ((line[start:].strip()[:24] or line.strip()[:24], _FOREIGN),)
+    return tuple(found for block in blocks for found in _foreign_words(block, dialect))
 
 
-def _foreign_words(block: ParsedBlock, dialect: Dialect) -> list[Fault]:
+def _foreign_words(block: ParsedBlock, dialect: Dialect) -> list[tuple[str, int]]:
     if isinstance(block.statement, OWord):
         return []
-    line, found = block.place.line, []
+    found = []
     macro_call = any(word.letter == "G" and word.value in (65.0, 66.0, 66.1) for word in block.words)
     for word in block.words:
         if word.expression is not None:
@@ -166,9 +171,9 @@ def _foreign_words(block: ParsedBlock, dialect: Dialect) -> list[Fault]:
         if word.letter in "GM":
             if f"{word.letter}{word.value + 0.0:.12g}" not in dialect.codes:
                 builders = word.letter == "M" and word.value not in _CALLS
-                found.append(Fault(line, word.text, _BUILDER if builders else _FOREIGN))
+                found.append((word.text, _BUILDER if builders else _FOREIGN))
         elif word.letter in dialect.senders_text:
-            found.append(Fault(line, word.text, _BUILDER))
+            found.append((word.text, _BUILDER))
         elif not macro_call and word.letter not in _LETTERS[dialect.name]:
-            found.append(Fault(line, word.text, _FOREIGN))
+            found.append((word.text, _FOREIGN))
     return found

@@ -81,22 +81,24 @@ def moves(steps: tuple[Step, ...]) -> list[Move]:
 
 @every_cycle
 @given(hole=holes(), return_to_r=st.booleans())
-def test_ends_over_the_hole_at_r_or_the_initial_level(
-    rules: CycleRules, code: str, hole: dict[str, float], return_to_r: bool
-) -> None:
+def test_laws_of_a_hole(rules: CycleRules, code: str, hole: dict[str, float], return_to_r: bool) -> None:
     done = run(rules, code, hole, return_to_r=return_to_r)
+    ends_over_the_hole_at_r_or_the_initial_level(done, hole, return_to_r)
+    no_rapid_motion_goes_where_nothing_was_drilled(done, hole)
+    in_the_plane_it_moves_only_at_rapid_and_above_r(done, hole)
+    one_hole_is_the_same_with_g90_and_g91(done, run(rules, code, hole, return_to_r=return_to_r, absolute=False))
+    if rules.cycles[code].repeats:
+        a_repeat_is_the_same_as_two_blocks(rules, code, hole)
+
+
+def ends_over_the_hole_at_r_or_the_initial_level(done: CycleOutput, hole: dict[str, float], return_to_r: bool) -> None:
     level = hole["R"] if return_to_r else hole["from"]
     assert moves(done.steps)[-1].end == done.position == (hole["X"], hole["Y"], level)
 
 
-@every_cycle
-@given(hole=holes(), return_to_r=st.booleans())
-def test_no_rapid_motion_goes_where_nothing_was_drilled(
-    rules: CycleRules, code: str, hole: dict[str, float], return_to_r: bool
-) -> None:
+def no_rapid_motion_goes_where_nothing_was_drilled(done: CycleOutput, hole: dict[str, float]) -> None:
     drilled = hole["R"]
-    steps = moves(run(rules, code, hole, return_to_r=return_to_r).steps)
-    for move in steps:
+    for move in moves(done.steps):
         if move.rapid:
             assert move.normal >= drilled - NEAR
         else:
@@ -104,34 +106,22 @@ def test_no_rapid_motion_goes_where_nothing_was_drilled(
     assert drilled == hole["Z"]
 
 
-@every_cycle
-@given(hole=holes())
-def test_in_the_plane_it_moves_only_at_rapid_and_above_r(rules: CycleRules, code: str, hole: dict[str, float]) -> None:
+def in_the_plane_it_moves_only_at_rapid_and_above_r(done: CycleOutput, hole: dict[str, float]) -> None:
     at = (1.0, 2.0, hole["from"])
-    for move in moves(run(rules, code, hole).steps):
+    for move in moves(done.steps):
         if move.end[:2] != at[:2]:
             assert move.rapid
             assert min(at[2], move.normal) >= hole["R"]
         at = move.end
 
 
-@every_cycle
-@given(hole=holes(), return_to_r=st.booleans())
-def test_one_hole_is_the_same_with_g90_and_g91(
-    rules: CycleRules, code: str, hole: dict[str, float], return_to_r: bool
-) -> None:
-    absolute = run(rules, code, hole, return_to_r=return_to_r)
-    incremental = run(rules, code, hole, return_to_r=return_to_r, absolute=False)
+def one_hole_is_the_same_with_g90_and_g91(absolute: CycleOutput, incremental: CycleOutput) -> None:
     assert absolute.steps == incremental.steps
     assert absolute.position == incremental.position
 
 
-@every_cycle
-@given(hole=holes())
-def test_a_repeat_is_the_same_as_so_many_blocks(rules: CycleRules, code: str, hole: dict[str, float]) -> None:
+def a_repeat_is_the_same_as_two_blocks(rules: CycleRules, code: str, hole: dict[str, float]) -> None:
     """With G91 a block with a repeat of 2 does what two blocks do."""
-    if not rules.cycles[code].repeats:
-        return
     start, cycle = (1.0, 2.0, hole["from"]), rules.cycles[code]
     words = {"X": 3.0, "R": hole["R"] - hole["from"], "Z": hole["Z"] - hole["R"]}
     words |= {"Q": hole["Q"]} if cycle.pecks else {}

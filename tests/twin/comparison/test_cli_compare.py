@@ -176,13 +176,8 @@ def test_report_is_one_file_with_pictures_in_it(
 
 @pytest.mark.parametrize("axes", ["x=Fx,y=Fy", "z=Fz"])
 def test_report_of_some_axes(axes: str, archive: Path, measured: Path, tmp_path: Path) -> None:
-    assert run(["compare", str(archive), str(measured), "--map", axes, *WINDOWS, "--report", str(tmp_path)]) == 0
+    assert run(["compare", str(archive), str(measured), "--map", axes, *WINDOWS[:2], "--report", str(tmp_path)]) == 0
     assert ("Fz</th>" in (tmp_path / "report.html").read_text()) == ("z" in axes)
-
-
-def test_report_of_the_whole_overlap(archive: Path, measured: Path, tmp_path: Path) -> None:
-    assert run(["compare", str(archive), str(measured), "--report", str(tmp_path / "r")]) == 0
-    assert "(whole overlap)" in (tmp_path / "r" / "report.html").read_text()
 
 
 def test_the_comparisons_file_can_be_read_again(archive: Path, measured: Path, tmp_path: Path) -> None:
@@ -296,11 +291,11 @@ def test_tables_that_are_none(archive: Path, tmp_path: Path, capsys: pytest.Capt
     )
 
 
-def test_a_batch_as_json_with_reports(
+def test_a_batch_as_json_with_reports_of_the_whole_overlap(
     archive: Path, measured: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "t.csv").write_text("run,measured\nrun.mcap,ap1.csv\n")
     assert run(["compare", "--batch", str(tmp_path / "t.csv"), "--json", "--report", str(tmp_path / "r")]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found[0]["name"] == "ap1" and found[0]["comparison"]["lag_s"] == pytest.approx(0.0123, abs=1e-5)
-    assert (tmp_path / "r" / "002_ap1" / "report.html").is_file()
+    assert "(whole overlap)" in (tmp_path / "r" / "002_ap1" / "report.html").read_text()
