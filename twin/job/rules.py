@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeAlias
@@ -125,7 +126,7 @@ def angle_divides_turn(facts: Facts, _folder: Path) -> Iterator[Problem]:
     if angle is None:
         return
     count = 360.0 / angle
-    if abs(count - round(count)) > 1e-9 * count:
+    if not math.isfinite(count) or abs(count - round(count)) > 1e-9 * count:
         nearest = min(_EVEN_ANGLES_DEG, key=lambda even: abs(even - angle))
         expected = f"an angle that divides 360 evenly, e.g. {nearest:g}"
         yield wrong(("simulation", "angle_step_deg"), angle, expected)

@@ -24,11 +24,13 @@ _LONGEST_MM = 1000.0
 _WIDEST_SHANK_MM = 100.0
 #: Smallest size that is not 0, mm.
 _SMALLEST_MM = 1e-3
+#: Smallest angle of a cone that is not 0, deg.
+_SMALLEST_DEG = 1e-3
 _MOST_TEETH = 100
 #: Lengths from the tip, each at most the next.
 _LENGTHS = ("flutes", "shoulder", "stickout", "overall")
 _DIAMETERS = ("diameter", "top", "neck", "shank")
-_MOST_NAME = 200
+_MOST_NAME = 300
 #: Relative difference of two sizes that are equal but for rounding.
 _ROUNDING = 1e-3
 _MAY_BE_ZERO = ("corner", "taper", "tip", "helix")
@@ -78,8 +80,8 @@ def assemble(raw: RawTool) -> LibraryTool:
         holder=holder,
         holder_name=cleaned(raw.holder_name),
         source=raw.source,
-        notes=tuple(found.notes),
-        warnings=tuple(found.warnings),
+        notes=tuple(map(cleaned, found.notes)),
+        warnings=tuple(map(cleaned, found.warnings)),
     )
 
 
@@ -94,8 +96,9 @@ def _check_ranges(found: _Checked) -> None:
     for name in [*found.sizes]:
         size = found.sizes[name]
         if name in ("taper", "helix"):
-            if not abs(size.value) < 90.0:
-                found.refuse(name, "an angle below 90 degrees")
+            least = _SMALLEST_DEG if name == "taper" and size.value else -90.0
+            if not least <= size.value < 90.0:
+                found.refuse(name, "an angle above 0 and below 90 degrees" if name == "taper" else "below 90 degrees")
             continue
         most = _LARGEST_DIAMETER_MM if name in _DIAMETERS or name in ("corner", "tip") else _LONGEST_MM
         if size.value < 0.0 or (size.value == 0.0 and name == "diameter"):
@@ -220,6 +223,8 @@ def _end_cone(found: _Checked, wide: Size, diameter: float, corner: float, taper
     flutes = found.sizes.get("flutes")
     if height <= 0.0:
         found.refuse("top", f"above the diameter at the tip, {diameter:g} mm")
+    elif height > _LONGEST_MM:
+        found.refuse("top", f"a diameter that the cone reaches within {_LONGEST_MM:g} mm")
     elif flutes is None or height < flutes.value * (1.0 - _ROUNDING):
         found.sizes["flutes"] = Size(height, f"height of the cone = {height:g} mm")
         found.notes.append(f"the cone of {taper:g} deg ends at {wide.text}, {height:.4g} mm above the tip")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from twin.settings.toml_text import toml_value
+from twin.tool_library.assemble import cleaned
 from twin.tool_library.library_tool import LibraryTool
 
 #: What a job needs and a library may lack, with a remark.
@@ -25,7 +26,7 @@ def job_text(tools: Sequence[LibraryTool], heading: str) -> str:
         tools: the tools.
         heading: first line, a comment.
     """
-    return "\n".join([f"# {heading}", "", *_blocks(tools)])
+    return "\n".join([f"# {cleaned(heading)}", "", *_blocks(tools)])
 
 
 def _blocks(tools: Iterable[LibraryTool]) -> Iterator[str]:
@@ -33,15 +34,10 @@ def _blocks(tools: Iterable[LibraryTool]) -> Iterator[str]:
         if tool.obstacle:
             yield f"# {tool.title} cannot be simulated: {tool.obstacle}\n"
             continue
-        yield f"# {_one_line(tool.source)}"
-        yield from (f"# {note}" for note in (*tool.notes, *tool.warnings))
+        yield from (f"# {cleaned(text)}" for text in (tool.source, *tool.notes, *tool.warnings))
         yield "[[tools]]"
         table = tool.as_job_table()
         for key, value in table.items():
             yield f"{key} = {toml_value(value)}"
         yield from (f"# {key} =    # {remark}" for key, remark in _REQUIRED.items() if key not in table)
         yield ""
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.split())

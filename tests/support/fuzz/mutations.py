@@ -56,6 +56,13 @@ TABLE = (
     ),
     *("\x00", "\x1b[31m", "\u202e", "\ufeff", "ß", "0x1F", "true", "1e-320", "9" * 400, "\u2009", "\xa0"),
 )
+#: Pieces of tool libraries: JSON, and sizes as text.
+LIBRARY = (
+    *("{", "}", "[", "]", ",", ":", '"', "null", "true", "NaN", "Infinity", "-Infinity", "1e999", "-1", "0", "1e-320"),
+    *('"unit": "inches",', '"type": "drill",', '"TA": 0.08,', '"DC": "1/0",', '"geometry": [],', '"number": "x",'),
+    *('1/4\\"', "30,0 mm", "1.234,5", " in", "°", ";", "\n", "T1", "x", "+", "\\ud800", "\\u0000", "\\u202e"),
+    *("\x00", "\ufeff", "9" * 5000, "[" * 2000, "../../", "H1 U2 L3;", "25374.6", "1e18"),
+)
 #: Pieces of ASCII STL.
 STL = (
     *("facet", "normal", "outer", "loop", "vertex", "endloop", "endfacet", "solid", "endsolid", "end solid", "\n", " "),

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import cache, partial
 from pathlib import Path
 
-from support.fuzz.mutations import STL, TABLE, TOML, Mutation, binary_mutated, mutated, text_mutated
+from support.fuzz.mutations import LIBRARY, STL, TABLE, TOML, Mutation, binary_mutated, mutated, text_mutated
 
 #: Files next to an input, which it names.
 Neighbours = dict[str, bytes]
@@ -76,13 +76,16 @@ def _toml(tables: Callable[[], list[dict[str, object]]]) -> Callable[[], list[by
 def _jobs() -> list[dict[str, object]]:
     from support.job_files import job_data
 
-    return [job_data()]
+    return [job_data(), job_data(tools=[{"from": "shop.json", "number": 3, "library_unit": "mm", "teeth": 2}])]
 
 
 def _job_neighbours() -> Neighbours:
     from support.job_files import PROGRAM
+    from support.tool_libraries import fusion_library, fusion_tool
 
-    return {"slot.nc": PROGRAM.encode(), "mold.stl": _boxes()[0], "a.csv": b"Fx,Fy,Fz\n1,2,3\n1,2,3\n"}
+    log = b"Fx,Fy,Fz\n1,2,3\n1,2,3\n"
+    library = fusion_library(fusion_tool())
+    return {"slot.nc": PROGRAM.encode(), "mold.stl": _boxes()[0], "a.csv": log, "shop.json": library}
 
 
 def _load_job(path: Path) -> object:
@@ -236,6 +239,44 @@ def _read_parameters(path: Path) -> object:
     return read_parameters(path)
 
 
+def _libraries() -> list[bytes]:
+    """A library of every format, and one packed."""
+    from support import tool_libraries as made
+
+    tapered = made.fusion_tool(type="tapered mill", RE=0.5, DC=1.0, TA=5.0, expressions={"tool_diameter": "1/16 in"})
+    fusion = made.fusion_library(made.fusion_tool(), made.fusion_tool(type="chamfer mill", unit="inches"), tapered)
+    rows = (
+        made.FUSION_CSV,
+        made.LINUXCNC,
+        "T;Type;Diameter;Corner radius;Z;Flute length;Shank\n4;Bull;12,5;1,5;4;26;12x5",
+    )
+    bits = (made.freecad_bit(), made.freecad_library("bit.fctb", "gone.fctb"), made.FREECAD_HOLDER, made.CAMOTICS)
+    return [fusion, made.zipped(fusion), *bits, *(text.encode() for text in rows)]
+
+
+def _library_neighbours() -> Neighbours:
+    from support.tool_libraries import FREECAD_HOLDER, freecad_bit
+
+    return {"bit.fctb": freecad_bit(ToolHolder="nut", Stickout="30 mm"), "nut.fcholder": FREECAD_HOLDER}
+
+
+def _mutated_library(source: random.Random, data: bytes) -> bytes:
+    return binary_mutated(source, data) if data.startswith(b"PK") else text_mutated(source, data, LIBRARY)
+
+
+def _read_library(path: Path) -> object:
+    """Read a library, and write its tools: the CSV reads back as the same tools, the TOML is TOML."""
+    import tomllib
+
+    from twin.tool_library import read_tool_library
+    from twin.tool_library.formats.plain_csv import csv_text, csv_tools
+    from twin.tool_library.write import job_text
+
+    tools = read_tool_library(path).tools
+    assert (*csv_tools(csv_text(tools), path, "mm"),) == tools
+    return tomllib.loads(job_text(tools, "tools")), [tool.as_job_table() for tool in tools if tool.simulated]
+
+
 _TOML, _TABLE = partial(text_mutated, pieces=TOML), partial(text_mutated, pieces=TABLE)
 
 
@@ -250,6 +291,13 @@ TARGETS: dict[str, Target] = {
     "job": Target(suffix=".toml", seeds=_toml(_jobs), once=_TOML, use=_load_job, neighbours=_job_neighbours),
     "test cuts": Target(suffix=".toml", seeds=_toml(_cuts), once=_TOML, use=_load_cuts, neighbours=_job_neighbours),
     "mold job": Target(suffix=".toml", seeds=_molds, once=_TOML, use=_load_mold, neighbours=_job_neighbours),
+    "tool library": Target(
+        suffix=".json",
+        seeds=_libraries,
+        once=_mutated_library,
+        use=_read_library,
+        neighbours=_library_neighbours,
+    ),
     "STL": Target(suffix=".stl", seeds=_boxes, once=_mutated_stl, use=_load_mesh),
     "run": Target(suffix=".mcap", seeds=_runs, once=_inside_mutated, use=_read_run),
     "comparison": Target(suffix=".mcap", seeds=_comparisons, once=_inside_mutated, use=_read_comparison),

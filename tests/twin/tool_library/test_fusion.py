@@ -137,7 +137,7 @@ def test_a_chamfer_mill_with_a_flat_tip_is_a_cone(tmp_path: Path) -> None:
         ({"RE": 2.0}, "RE = 2 mm: expected half of DC = 6 mm, the radius of a ball"),
         ({"NOF": 2.5}, "NOF = 2.5: expected a whole number"),
         ({"NOF": 4000}, "4000 teeth: expected 1 to 100"),
-        ({"TA": 120.0}, "TA = 120 deg: expected an angle below 90 degrees"),
+        ({"TA": 120.0}, "TA = 120 deg: expected an angle above 0 and below 90 degrees"),
     ],
 )
 def test_a_value_that_cannot_be_right_is_named_and_left_out(
