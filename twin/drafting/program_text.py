@@ -1,0 +1,99 @@
+"""The text of a program as posts write it: comments, tool words and units, each with its line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, TypeAlias
+
+from gcode.language.program import Program
+
+Unit: TypeAlias = Literal["mm", "inch"]
+
+#: A comment in parentheses, one that is not closed, or one after a semicolon.
+_COMMENT = re.compile(r"\(([^()]*(?:\([^()]*\)[^()]*)*)\)|\((.*)$|;(.*)$")
+_TOOL = re.compile(r"T\s*(?:(\d+)|(?=[#\[]))", re.IGNORECASE)
+_MOTION = re.compile(r"(?:^|[^A-Z])[XYZ]\s*[-+.\d\[#]", re.IGNORECASE)
+_UNITS = re.compile(r"G\s*0*(20|21|70|71)(?![\d.])", re.IGNORECASE)
+_TAPE = re.compile(r"^\s*(?:%|[O:]\s*\d+\s*$)")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Comment:
+    """A comment of a program.
+
+    Attributes:
+        line: its line, counted from 1.
+        text: the text between its marks, without blanks at its ends.
+    """
+
+    line: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolWord:
+    """A T word.
+
+    Attributes:
+        line: its line, counted from 1.
+        number: the tool's number, None where an expression gives it.
+    """
+
+    line: int
+    number: int | None
+
+
+class ProgramText:
+    """A program's comments and words, read without running it."""
+
+    def __init__(self, program: Program) -> None:
+        self.file = program.file
+        comments, tools, motions, units = [], [], [], []
+        for line, text in enumerate(program, start=1):
+            comments += [Comment(line=line, text=found) for found in _comments(text)]
+            words = _COMMENT.sub(" ", text)
+            tools += [ToolWord(line=line, number=int(n) if n else None) for n in _TOOL.findall(words)]
+            units += [int(n) for n in _UNITS.findall(words)]
+            if _MOTION.search(words):
+                motions.append(line)
+        self.comments = tuple(comments)
+        self.tool_words = tuple(tools)
+        self._motions = tuple(motions)
+        self._units = units
+
+    @cached_property
+    def unit(self) -> Unit:
+        """Unit of the program's lengths: that of its first G20 or G21, mm without one."""
+        return "inch" if self._units and self._units[0] in (20, 70) else "mm"
+
+    @property
+    def states_unit(self) -> bool:
+        """Whether a G20 or G21 is in the program."""
+        return bool(self._units)
+
+    def tool_at(self, line: int) -> ToolWord | None:
+        """The T word that a comment on a line belongs to.
+
+        A comment on the line of a T word, or after one and before the first motion, belongs to it; others to the next
+        T word, the last ones to the last.
+        """
+        before = [word for word in self.tool_words if word.line <= line]
+        after = [word for word in self.tool_words if word.line > line]
+        if before and (not after or before[-1].line == line or not self._moved(before[-1].line, line)):
+            return before[-1]
+        return after[0] if after else None
+
+    def _moved(self, first: int, last: int) -> bool:
+        return any(first < line < last for line in self._motions)
+
+
+def _comments(text: str) -> Iterator[str]:
+    if "(" not in text and ";" not in text:
+        return
+    for closed, opened, after in _COMMENT.findall(text):
+        found = (closed or opened or after).strip()
+        if found and not _TAPE.match(found):
+            yield found

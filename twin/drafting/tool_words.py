@@ -1,0 +1,187 @@
+"""A tool described in words: ``1/2 FLAT ENDMILL``, ``10. END_MILL_SPHER DIA. 10.``, ``BULL 12 R2 4FL``.
+
+Words of the trade in several languages decide the kind; a size counts only with a mark that makes it one.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+from twin.drafting.program_text import Unit
+
+_INCH_MM = 25.4
+#: Kinds by the words that name them; the first that is found counts, so special tools come before general ones.
+_KINDS: tuple[tuple[str, str], ...] = (
+    ("probe", r"PROBE|TASTER|EDGE ?FINDER"),
+    ("spot drill", r"SPOT|CENT(?:ER|RE)[ _-]?DRILL|NC[ -]?ANBOHRER|ANBOHRER|ZENTRIERBOHRER"),
+    ("flat", r"SLOT[ _-]?DRILL"),
+    ("drill", r"DRILL|BOHRER|FORET|BROCA|WIERTLO|PUNTA"),
+    ("tap", r"TAP|(?:RIGHT|LEFT)[ _-]?(?:HAND[ _-]?)?TAP|TAPPING|GEWINDEBOHRER|TARAUD"),
+    ("thread mill", r"THREAD[ _-]?MILL(?:ING)?|GEWINDEFR[AÄ]E?SER"),
+    ("reamer", r"REAM(?:ER|ING)?|REIBAHLE"),
+    ("boring bar", r"BORING(?:[ _-](?:BAR|HEAD))?|BORE[ _-]?BAR"),
+    ("dovetail mill", r"DOVE[ _-]?TAIL"),
+    ("slot mill", r"T[ _-]?SLOT|SLOT[ _-]?MILL|WOODRUFF|KEY[ _-]?(?:SEAT|CUTTER)|SLITTING"),
+    ("lollipop mill", r"LOLLI[ _-]?POP|UNDERCUT"),
+    ("counterbore", r"COUNTER[ _-]?BORE|C[ -]?BORE"),
+    ("chamfer mill", r"CHAMFER|CHAM|V[ _-]?BIT|V[ _-]?GROOVE|ENGRAV\w*|COUNTER[ _-]?SINK|C[ -]?SINK|FASENFR\w*|GRAVIER\w*"),
+    ("taper", r"TAPER(?:ED)?|CONICAL|KONISCH"),
+    ("ball", r"BALL(?:[ _-]?(?:NOSE|END|MILL|ENDMILL))?|BALLNOSE|BALLMILL|SPHER\w*|KUGEL\w*|BOULE|SF[EÉ]RIC\w*|ESF[EÉ]RIC\w*|BOLA|KULOWY"),
+    ("bull", r"BULL(?:[ _-]?(?:NOSE|END|MILL|ENDMILL))?|BULLNOSE|TOR(?:US|IC|IQUE|OID\w*)|TORUSFR\w*|(?:CORNER[ _-]?)RAD(?:IUS)?(?![\w.]*\s*[:=]?\s*0+\.?0*\b)"),
+    ("face mill", r"FACE[ _-]?MILL(?:ING)?|SHELL[ _-]?MILL|FLY[ _-]?CUTTER|PLANFR\w*|FACING|MESSERKOPF"),
+    (
+        "flat",
+        r"END[ _-]?MILL\d*|ENDMILL\d*|E/?M|FLAT|SQUARE|ROUTER|UP[ _-]?CUT|DOWN[ _-]?CUT|COMPRESSION|(?:SINGLE|O)[ _-]?FLUTE"
+        r"|MILL|CUTTER|SCHAFTFR\w*|FR(?:AE|Ä|A)SER\d*|FREZA|FREZ|FRAISE|FRESA|CYLIND\w*|\d+[ _-]?FLUTE",
+    ),
+)
+_KIND = tuple((kind, re.compile(rf"(?<![A-Z]){words}(?![A-Z])".replace(words, f"(?:{words})"))) for kind, words in _KINDS)
+
+_NUMBER = r"(?:\d+[ -]\d+/\d+|\d+/\d+|\d*\.\d+|\d+\.?)"
+_UNIT = r"(?:MM|MILLIMET\w*|INCH\w*|IN\b|''|\"|”|″)"
+#: A diameter, the surest mark first.
+_DIAMETERS = tuple(
+    re.compile(pattern)
+    for pattern in (
+        rf"\bDIA(?:M(?:ETER)?|MET\w*)?\b\.?\s*[-:=]?\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?",
+        rf"(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?\s*-?\s*DIA(?:M(?:ETER)?)?\b",
+        rf"[Ø⌀]\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?",
+        rf"(?<![A-Z0-9])D\s*[:=]?\s*(?P<n>{_NUMBER})(?![\d/])\s*(?P<u>{_UNIT})?",
+        rf"\{{\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT}|INCHES)\s*\}}",
+        rf"(?<![A-Z0-9.])(?P<n>{_NUMBER})\s*-?(?P<u>{_UNIT})",
+        r"(?<![A-Z0-9.])(?P<n>\d+[ -]\d+/\d+|\d+/\d+)(?P<u>)(?!\d)",
+    )
+)
+#: A bare number right before a word of the tool's kind.
+_BARE = re.compile(rf"(?<![A-Z0-9.#-])(?P<n>{_NUMBER})\s+(?=[A-Z])(?P<rest>.*)")
+_CORNER = re.compile(
+    rf"(?:\bCORNER[ _-]?RAD(?:IUS)?\b\.?|\bCRN?\b\.?|\bRAD(?:IUS)?\b\.?|(?<![A-Z0-9])R)\s*[:=-]?\s*(?P<n>{_NUMBER})"
+    rf"\s*(?P<u>{_UNIT})?|(?P<n2>{_NUMBER})\s*(?P<u2>{_UNIT})?\s*(?:CR|RAD|CORNER)\b"
+)
+_TEETH = re.compile(
+    r"(?<![\d.])(\d{1,2})\s*[-_]?\s*(?:FLUTES?|FLT?S?|TEETH|TOOTH|ZAHN\w*|Z)(?![A-Z])|(?<![A-Z0-9])Z\s*=?\s*(\d{1,2})(?![\d.])"
+    r"|(?:FLUTES|TEETH)\s*[:=]\s*(\d{1,2})"
+)
+_FLUTE_WORDS = {"SINGLE FLUTE": 1, "O FLUTE": 1, "SINGLE-FLUTE": 1, "O-FLUTE": 1}
+_FLUTE_LENGTH = re.compile(rf"\b(?:LOC|LCF|FLUTE[ _-]?LEN(?:GTH)?)\b\.?\s*[:=-]?\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?")
+_HELIX = re.compile(r"\bHELIX\b\s*[:=-]?\s*(\d+(?:\.\d+)?)|(\d+(?:\.\d+)?)\s*(?:DEG(?:REES?)?)?\s*HELIX\b")
+_ANGLE = re.compile(r"(?<![\d.])(\d+(?:\.\d+)?)\s*(?:DEG(?:REES?)?\b|°)|\bANGLE\b\s*[:=]?\s*(\d+(?:\.\d+)?)")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolStatement:
+    """Values that a text states about a tool, None for those that it does not state. Lengths in mm.
+
+    Attributes:
+        number: tool number.
+        name: the text, human-readable.
+        kind: ``flat``, ``ball``, ``bull``, ``taper``, or a kind that is not simulated, as ``drill``.
+        angle_deg: angle as written: the full angle of a point, the half angle of a taper.
+        z_min_mm: lowest Z that the post states for the tool.
+    """
+
+    number: int | None = None
+    name: str = ""
+    kind: str | None = None
+    diameter_mm: float | None = None
+    corner_radius_mm: float | None = None
+    teeth: int | None = None
+    helix_deg: float | None = None
+    flute_length_mm: float | None = None
+    angle_deg: float | None = None
+    z_min_mm: float | None = None
+
+    def over(self, other: ToolStatement) -> ToolStatement:
+        """These values, and those of another statement where there are none."""
+        names = [f for f in self.__dataclass_fields__ if getattr(self, f) in (None, "")]
+        return replace(self, **{name: getattr(other, name) for name in names})
+
+
+def number_of(text: str) -> float:
+    """A number as tools are labelled: ``.25``, ``10.``, ``3/8``, ``1 1/4``, ``1-1/4``; a decimal comma too.
+
+    Raises:
+        ValueError: not a number.
+    """
+    whole, _, part = re.sub(r"(?<=\d)-(?=\d)", " ", text.strip().replace(",", ".")).rpartition(" ")
+    if "/" in part:
+        above, _, below = part.partition("/")
+        if float(below) == 0.0:
+            raise ValueError(f"{text!r} is not a number")
+        return (float(whole) if whole else 0.0) + float(above) / float(below)
+    return float(part)
+
+
+def length_mm(number: str, mark: str | None, unit: Unit) -> float:
+    """A length in mm: in the unit of its mark, else in the program's; a fraction without a mark is in inches."""
+    mark = (mark or "").strip().upper()
+    inch = not mark.startswith("M") if mark else unit == "inch" or "/" in number
+    return round(number_of(number) * (_INCH_MM if inch else 1.0), 6)
+
+
+def kind_in(text: str) -> str | None:
+    """The kind of tool that a text names, None for none."""
+    upper = text.upper().replace("_", " ")
+    return next((kind for kind, words in _KIND if words.search(upper)), None)
+
+
+def rounded(corner_radius_mm: float, diameter_mm: float) -> str:
+    """Kind of an end mill with a corner radius; posts round both to two decimals."""
+    return "ball" if abs(corner_radius_mm - 0.5 * diameter_mm) <= 1e-3 * diameter_mm + 1e-9 else "bull"
+
+
+def described(text: str, unit: Unit) -> ToolStatement:
+    """Values in a description of a tool.
+
+    Args:
+        text: the description.
+        unit: of lengths without a mark.
+    """
+    upper = text.upper().replace("_", " ")
+    kind = kind_in(text)
+    corner = _length(_CORNER.search(upper), unit)
+    diameter = _diameter(upper, unit)
+    if kind == "flat" and corner and diameter:
+        kind = rounded(corner, diameter)
+    helix, angle = _HELIX.search(upper), _ANGLE.search(_HELIX.sub(" ", upper))
+    return ToolStatement(
+        name=" ".join(text.split()),
+        kind=kind,
+        diameter_mm=diameter,
+        corner_radius_mm=corner,
+        teeth=_teeth(upper),
+        helix_deg=float(helix[1] or helix[2]) if helix else None,
+        flute_length_mm=_length(_FLUTE_LENGTH.search(upper), unit),
+        angle_deg=float(angle[1] or angle[2]) if angle else None,
+    )
+
+
+def _diameter(upper: str, unit: Unit) -> float | None:
+    upper = _CORNER.sub(lambda m: " " if m["n"] or m["n2"] else m[0], _FLUTE_LENGTH.sub(" ", _TEETH.sub(" ", upper)))
+    for pattern in _DIAMETERS:
+        for match in pattern.finditer(upper):
+            if (value := length_mm(match["n"], match["u"], unit)) > 0.0:
+                return value
+    bare = _BARE.search(upper)
+    if bare is not None and kind_in(" ".join(bare["rest"].split()[:3])) is not None:
+        return length_mm(bare["n"], None, unit) or None
+    return None
+
+
+def _length(match: re.Match[str] | None, unit: Unit) -> float | None:
+    if match is None:
+        return None
+    groups = match.groupdict()
+    number, mark = groups["n"], groups["u"]
+    if number is None:
+        number, mark = groups["n2"], groups["u2"]
+    return length_mm(number, mark, unit)
+
+
+def _teeth(upper: str) -> int | None:
+    match = _TEETH.search(upper)
+    if match is not None:
+        count = int(next(group for group in match.groups() if group))
+        return count or None
+    return next((count for words, count in _FLUTE_WORDS.items() if words in upper), None)
