@@ -77,7 +77,7 @@ class ToolStatement:
         number: tool number.
         name: the text, human-readable.
         kind: ``flat``, ``ball``, ``bull``, ``taper``, or a kind that is not simulated, as ``drill``.
-        angle_deg: angle as written: the full angle of a point, the half angle of a taper.
+        angle_deg: half angle of a chamfer mill or a taper, full angle of the point of a drill.
         z_min_mm: lowest Z that the post states for the tool.
     """
 
@@ -153,8 +153,13 @@ def described(text: str, unit: Unit) -> ToolStatement:
         teeth=_teeth(upper),
         helix_deg=float(helix[1] or helix[2]) if helix else None,
         flute_length_mm=_length(_FLUTE_LENGTH.search(upper), unit),
-        angle_deg=float(angle[1] or angle[2]) if angle else None,
+        angle_deg=_half_angle(float(angle[1] or angle[2]), kind) if angle else None,
     )
+
+
+def _half_angle(angle_deg: float, kind: str | None) -> float:
+    """Chamfer and engraving tools are described by the full angle of their point, tapers by the half angle."""
+    return 0.5 * angle_deg if kind == "chamfer mill" else angle_deg
 
 
 def _diameter(upper: str, unit: Unit) -> float | None:

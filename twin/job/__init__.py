@@ -16,7 +16,7 @@ from twin.job.job_file import (
     Tool,
     job_schema,
 )
-from twin.job.load import job_from_dict, load_job
+from twin.job.load import job_from_dict, job_from_text, load_job
 from twin.job.stock_keys import Box, Cylinder, Stock
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "Stock",
     "Tool",
     "job_from_dict",
+    "job_from_text",
     "job_schema",
     "load_job",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -50,6 +51,19 @@ def job_from_dict(data: Mapping[str, Any], folder: str | PathLike[str] = ".") ->
         JobError: see `load_job`.
     """
     return _job(data, Path(folder) / "job.toml", toml_text(data))
+
+
+def job_from_text(text: str, path: str | PathLike[str]) -> Job:
+    """Make a job from the text of a job file that need not exist.
+
+    Args:
+        text: TOML.
+        path: the file, to whose folder paths of files are relative.
+
+    Raises:
+        JobError: see `load_job`.
+    """
+    return _job(tomllib.loads(text), Path(path), text)
 
 
 def _job(data: Mapping[str, Any], path: Path, text: str) -> Job:

@@ -1,0 +1,322 @@
+"""A job from an NC program: `draft_job`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gcode.errors import GcodeError
+from gcode.flow.interpreter import taken_dialect
+from gcode.language.program import Program, read_program
+from twin.drafting.cuts import Cuts, cuts_of
+from twin.drafting.doubts import doubts
+from twin.drafting.estimate import Estimate, estimate
+from twin.drafting.fineness import Fineness, fineness_of
+from twin.drafting.from_library import library_tools
+from twin.drafting.notes import Assumption, Notes
+from twin.drafting.program_text import ProgramText
+from twin.drafting.settings import DraftSettings
+from twin.drafting.stock import StockBox, stock_of
+from twin.drafting.stock_posts import stock_comment
+from twin.drafting.tables import DraftTable, file_text
+from twin.drafting.tools import DraftTool, completed, stated_tools, tool_table
+from twin.errors import ReplayError
+from twin.job import Job, job_from_text
+from twin.materials import find_material
+from twin.settings.check import changed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class JobDraft:
+    """A job that was drafted from an NC program.
+
+    Attributes:
+        path: the job file, which need not exist.
+        assumptions: values that the program does not state.
+        open: what could not be assumed, and what to do about it.
+        warnings: contradictions in the program or with what was given.
+        estimate: time, memory and file sizes of a replay.
+        tables: the tables of the file.
+    """
+
+    path: Path
+    assumptions: tuple[Assumption, ...]
+    assumed: tuple[str, ...]
+    open: tuple[str, ...]
+    warnings: tuple[str, ...]
+    estimate: Estimate
+    tables: tuple[DraftTable, ...]
+
+    def toml_text(self) -> str:
+        """The job file, with a comment at every value that was assumed."""
+        heading = [f"Drafted from {self.tables[0].get('file')}. Comments name what was assumed; change what is wrong."]
+        return file_text(heading + [f"open: {text}" for text in self.open], self.tables)
+
+    def job(self) -> Job:
+        """The job, checked as its file would be.
+
+        Raises:
+            JobError: values that a job must not have.
+        """
+        return job_from_text(self.toml_text(), self.path)
+
+
+def draft_job(
+    nc_path: str | PathLike[str],
+    settings: DraftSettings | None = None,
+    *,
+    path: str | PathLike[str] | None = None,
+    **values: Any,
+) -> JobDraft:
+    """Draft a job from an NC program: dialect, tools, stock, work offsets, resolution.
+
+    What the program states, in its blocks and in the comments of its post, is used; the rest is assumed, each value
+    with a comment in the file and an entry in ``assumptions``. Nothing is written.
+
+    Args:
+        nc_path: the NC program.
+        settings: values to use in place of assumed ones.
+        path: the job file that is to be written, to which paths in it are relative; the program's name with .toml in
+            the current folder if not given.
+        values: settings by name, e.g. ``material="Al7075-T6"``, ``stock="box 100 60 20"``.
+
+    Returns:
+        The draft: text of the file, job, assumptions, warnings, estimate.
+
+    Raises:
+        SettingsError: wrong settings.
+        TwinError: a library, material or stock that cannot be used, or a program that cuts nothing.
+        gcode.GcodeError: a program that cannot be interpreted.
+
+    Example:
+        >>> draft = twin.draft_job("part.nc", material="Al7075-T6")
+        >>> print(*draft.assumptions, sep="\\n")
+        >>> run = twin.replay(draft.job())
+    """
+    given = changed(DraftSettings, settings, values, "draft_job")
+    file = Path(nc_path)
+    target = Path(path) if path is not None else Path(f"{file.stem}.toml")
+    if given.material is not None:
+        find_material(given.material)
+    return _Drafting(file, given, target).draft()
+
+
+class _Drafting:
+    """The steps of one draft."""
+
+    def __init__(self, file: Path, given: DraftSettings, target: Path) -> None:
+        self.file, self.given, self.target = file, given, target
+        self.program: Program = read_program(file)
+        self.text = ProgramText(self.program)
+        self.notes = Notes()
+        dialect, notice = taken_dialect(self.program, given.dialect)
+        self.dialect = dialect.name
+        self.dialect_reason = notice.text if notice is not None else "given"
+        self.more: dict[str, Any] = {"m_codes": dict.fromkeys(given.m_codes, "none")}
+
+    def draft(self) -> JobDraft:
+        """All steps."""
+        tool = self.given.tool or 0
+        cuts = self._run(tool)
+        if not len(cuts.feed.tool):
+            raise ReplayError(f"{self.file}: the program has no feed motion; there is nothing to cut")
+        if 0 in cuts.tools:
+            tool = self._first_tool()
+            cuts = self._run(tool)
+        tools = self._tools(cuts)
+        if cuts.compensated:
+            cuts = self._compensated(tool, cuts, tools)
+        stock = self._stock(cuts, tools)
+        inside = cuts.feed.only(cuts.feed.low_mm[:, 2] < stock.high_mm[2])
+        mills = [t.diameter_mm for t in tools if t.cuts] or [t.diameter_mm for t in tools]
+        fine = self._fineness(fineness_of(inside, mills, stock.size_mm))
+        doubts(self.text, cuts, tools, stock.high_mm[2], self.notes)
+        tables = [
+            self._program_table(tool),
+            self._machine_table(cuts),
+            stock.table,
+            *self._tool_tables(cuts, tools, float(stock.high_mm[2])),
+            *self._cutting_tables(tools),
+            self._simulation_table(fine, tools),
+            self._output_table(),
+        ]
+        return JobDraft(
+            path=self.target,
+            assumptions=tuple(self.notes.assumptions),
+            assumed=tuple(self.notes.lines()),
+            open=tuple(self.notes.open),
+            warnings=tuple(self.notes.warnings),
+            estimate=estimate(cuts, stock, fine, forces=self._forces(tools)),
+            tables=tuple(tables),
+        )
+
+    def _run(self, tool: int, radii_mm: Mapping[int, float] | None = None) -> Cuts:
+        """Run the program; arcs whose centres do not fit are tried with absolute ones."""
+        try:
+            return cuts_of(self.program, self.dialect, tool=tool, radii_mm=radii_mm, **self.more)
+        except GcodeError as error:
+            if error.code != "arc-radius" or "arc_centres" in self.more:
+                raise
+            try:
+                cuts = cuts_of(self.program, self.dialect, tool=tool, radii_mm=radii_mm, **self.more, arc_centres="absolute")
+            except GcodeError:
+                raise error from None
+            self.more["arc_centres"] = "absolute"
+            reason = f"with incremental ones, line {error.place.line} is not an arc"
+            self.notes.assume("program", "arc centres I, J, K are coordinates", reason)
+            return cuts
+
+    def _first_tool(self) -> int:
+        """The tool in the spindle at the start of a program that cuts before its first tool change."""
+        known = list(stated_tools(self.text, [], Notes()))
+        words = [word.number for word in self.text.tool_words if word.number]
+        tool = (words or known or [1])[0]
+        self.notes.assume("program", f"T{tool} in the spindle at the start", "it cuts before its first tool change")
+        return tool
+
+    def _tools(self, cuts: Cuts) -> list[DraftTool]:
+        stated = stated_tools(self.text, cuts.tools, self.notes)
+        library = library_tools(self.given.tools, cuts.tools, stated, self.notes) if self.given.tools else {}
+        unit = self.text.unit
+        return [library.get(n) or completed(n, stated.get(n), unit, self.notes) for n in cuts.tools]
+
+    def _compensated(self, tool: int, cuts: Cuts, tools: list[DraftTool]) -> Cuts:
+        """The program again with the radius of each tool in its offsets."""
+        radii = {number: 0.0 for t in cuts.length_offsets.values() for number in t}
+        for one in tools:
+            radii[one.number] = 0.5 * one.diameter_mm
+            radii |= dict.fromkeys(cuts.compensated.get(one.number, ()), 0.5 * one.diameter_mm)
+        for number in sorted(cuts.compensated):
+            offsets = ", ".join(f"D{d}" for d in sorted(cuts.compensated[number]))
+            radius = radii.get(number, 0.0)
+            self.notes.assume(
+                f"T{number}", f"radius {radius:g} mm in {offsets}", "cutter compensation; a post may expect the wear only"
+            )
+        return self._run(tool, radii)
+
+    def _stock(self, cuts: Cuts, tools: list[DraftTool]) -> StockBox:
+        radii = {t.number: 0.5 * t.diameter_mm for t in tools}
+        stated = stock_comment(self.text.comments, self.text.unit)
+        given = self.given
+        return stock_of(cuts.feed, radii, stated, given.stock, given.margin_mm, self.notes, self.target.parent)
+
+    def _fineness(self, fine: Fineness) -> Fineness:
+        given = self.given
+        return Fineness(
+            pitch_mm=given.pitch_mm or fine.pitch_mm,
+            angle_deg=given.angle_step_deg or fine.angle_deg,
+            pitch_reason="given" if given.pitch_mm else fine.pitch_reason,
+            angle_reason="given" if given.angle_step_deg else fine.angle_reason,
+        )
+
+    def _program_table(self, tool: int) -> DraftTable:
+        table = DraftTable(name="program")
+        table.add("file", Path(os.path.relpath(self.file, self.target.parent)).as_posix())
+        table.add("dialect", self.dialect, self.dialect_reason)
+        if self.given.dialect == "auto":
+            self.notes.assume("program", f"dialect {self.dialect}", self.dialect_reason.partition(": ")[2])
+        if not self.text.states_unit:
+            table.add("units", "mm", "assumed: the program has no G20 or G21")
+            self.notes.assume("program", "lengths in mm", "it has no G20 or G21")
+        if "arc_centres" in self.more:
+            table.add("arc_centres", "absolute", "assumed: with incremental ones, the arcs have no common radius")
+        if tool:
+            table.add("tool", tool, "" if self.given.tool else "assumed: it cuts before its first tool change")
+        if self.given.m_codes:
+            table.add("m_codes", {str(code): "none" for code in self.given.m_codes})
+        return table
+
+    def _machine_table(self, cuts: Cuts) -> DraftTable:
+        reason = "the program does not state where its work zeros are on the machine"
+        table = DraftTable(name="machine")
+        table.add("offsets", {wcs: [0.0, 0.0, 0.0] for wcs in cuts.offsets}, f"assumed: {reason}")
+        names = ", ".join(cuts.offsets)
+        self.notes.assume("machine", f"{names} at 0", reason)
+        if len(cuts.offsets) > 1:
+            self.notes.warnings.append(
+                f"the program uses {len(cuts.offsets)} work offsets ({names}), and all of them are taken at the same "
+                "position; set machine.offsets in the job file (twin job)"
+            )
+        return table
+
+    def _tool_tables(self, cuts: Cuts, tools: list[DraftTool], top_mm: float) -> list[DraftTable]:
+        lowest = {n: float(cuts.feed.low_mm[cuts.feed.tool == n, 2].min()) for n in cuts.tools}
+        own = self._cutting(tools)
+        tables = []
+        for tool in tools:
+            cutting = own if own is not None and tool.cuts else None
+            tables.append(tool_table(tool, max(0.0, top_mm - lowest[tool.number]), cutting, self.notes))
+        return tables + self._offset_rows(cuts, tools)
+
+    def _offset_rows(self, cuts: Cuts, tools: list[DraftTool]) -> list[DraftTable]:
+        """Rows of the offset table with other numbers than the tools: the control looks them up there."""
+        rows: dict[int, DraftTool] = {}
+        for tool in tools:
+            numbers = cuts.compensated.get(tool.number, frozenset()) | cuts.length_offsets.get(tool.number, frozenset())
+            rows |= {n: tool for n in sorted(numbers) if n}
+        tables = []
+        for number in sorted(set(rows) - {tool.number for tool in tools}):
+            table = DraftTable(name="tools", listed=True)
+            table.comments.append(f"row {number} of the offset table, which T{rows[number].number} uses (H{number}, D{number})")
+            table.add("number", number)
+            table.add("kind", "flat")
+            table.add("diameter_mm", rows[number].diameter_mm)
+            table.add("teeth", 2)
+            table.add("flute_length_mm", max(1.0, rows[number].diameter_mm))
+            tables.append(table)
+        return tables
+
+    def _forces(self, tools: list[DraftTool]) -> bool:
+        return self.given.material is not None and any(tool.cuts for tool in tools)
+
+    def _cutting(self, tools: list[DraftTool]) -> dict[str, Any] | None:
+        """Coefficients in the tools' own tables, where not all of them have any."""
+        if self.given.material is None or all(tool.cuts for tool in tools):
+            return None
+        return {"material": find_material(self.given.material).name}
+
+    def _cutting_tables(self, tools: list[DraftTool]) -> list[DraftTable]:
+        table = DraftTable(name="cutting")
+        if self.given.material is None:
+            named = next((c for c in self.text.comments if _names_material(c.text)), None)
+            hint = f"; the program names one in line {named.line}: {named.text}" if named is not None else ""
+            self.notes.open.append(
+                f"the program does not state cutting coefficients, so no forces are computed; give --material NAME "
+                f"(twin materials lists the names){hint}"
+            )
+            table.comments.append("open: without a material, no forces are computed; twin materials lists the names")
+            table.add("material", None)
+        elif self._cutting(tools) is None:
+            table.add("material", find_material(self.given.material).name)
+        else:
+            return []
+        return [table]
+
+    def _simulation_table(self, fine: Fineness, tools: list[DraftTool]) -> DraftTable:
+        table = DraftTable(name="simulation")
+        note = "" if fine.pitch_reason == "given" else f"assumed: {fine.pitch_reason}"
+        table.add("slice_pitch_mm", fine.pitch_mm, note)
+        table.add("step_mm", fine.pitch_mm)
+        table.add("angle_step_deg", fine.angle_deg, "" if fine.angle_reason == "given" else f"assumed: {fine.angle_reason}")
+        table.add("axial_step_mm", min(fine.pitch_mm, 0.2))
+        if note:
+            self.notes.assume("simulation", f"slice pitch and step {fine.pitch_mm:g} mm", fine.pitch_reason)
+        if fine.angle_reason != "given":
+            self.notes.assume("simulation", f"{fine.angle_deg:g} deg between force samples", fine.angle_reason)
+        return table
+
+    def _output_table(self) -> DraftTable:
+        table = DraftTable(name="output")
+        table.add("mcap", f"{self.target.stem}.mcap")
+        return table
+
+
+def _names_material(text: str) -> bool:
+    name, _, value = text.upper().partition("=" if "=" in text else "-")
+    return name.strip() == "MATERIAL" and bool(value.strip())

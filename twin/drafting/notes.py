@@ -1,0 +1,43 @@
+"""Values of a draft that the program does not state, and contradictions in what it does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Assumption:
+    """A value that was not stated and had to be taken.
+
+    Attributes:
+        subject: what it is about: ``T3``, ``stock``, ``program``, ``simulation``, ``machine``.
+        value: the value in words: ``2 flutes``.
+        reason: why this one, or what does not state it.
+    """
+
+    subject: str
+    value: str
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.value} ({self.subject}: {self.reason})"
+
+
+@dataclass(slots=True)
+class Notes:
+    """Assumptions, warnings and open values of one draft, in order."""
+
+    assumptions: list[Assumption] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    open: list[str] = field(default_factory=list)
+
+    def assume(self, subject: str, value: str, reason: str) -> None:
+        """Note a value that was taken."""
+        self.assumptions.append(Assumption(subject=subject, value=value, reason=reason))
+
+    def lines(self) -> list[str]:
+        """The assumptions, one line for each subject and reason."""
+        groups: dict[tuple[str, str], list[str]] = {}
+        for one in self.assumptions:
+            groups.setdefault((one.subject, one.reason), []).append(one.value)
+        return [f"{', '.join(values)} ({subject}: {reason})" for (subject, reason), values in groups.items()]
