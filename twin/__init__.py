@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from twin.api import compare, identify, open_run, read_log, records, replay, write_coefficients, write_report
     from twin.comparison.comparison import Comparison
+    from twin.drafting.draft import JobDraft, draft_job
+    from twin.drafting.settings import DraftSettings
     from twin.errors import (
         ArchiveError,
         CollisionError,
@@ -75,12 +77,14 @@ __all__ = [
     "CompareSettings",
     "Comparison",
     "CutsError",
+    "DraftSettings",
     "Engagement",
     "ForceLog",
     "ForceSamples",
     "Identified",
     "IdentifyError",
     "Job",
+    "JobDraft",
     "JobError",
     "LibraryTool",
     "LogReading",
@@ -117,6 +121,7 @@ __all__ = [
     "WorkpiecePatch",
     "__version__",
     "compare",
+    "draft_job",
     "find_material",
     "identify",
     "job_from_dict",
@@ -144,6 +149,8 @@ _HOMES = {
         *("compare", "identify", "open_run", "read_log", "records", "replay", "write_coefficients", "write_report"),
     ),
     "twin.comparison.comparison": ("Comparison",),
+    "twin.drafting.draft": ("JobDraft", "draft_job"),
+    "twin.drafting.settings": ("DraftSettings",),
     "twin.errors": (
         *("ArchiveError", "CollisionError", "CompareError", "CutsError", "IdentifyError", "JobError", "MaterialError"),
         *("MeasuredError", "MeshError", "ReplayError", "SettingsError", "StockError", "ToolError", "ToolLibraryError"),

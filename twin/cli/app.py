@@ -14,7 +14,9 @@ from twin.cli.help import HelpCommand, HelpGroup
 _HELP_OPTIONS = ("-h", "--help")
 #: The commands, and the line of each in the program's help, which is printed without importing them.
 COMMANDS: Mapping[str, str] = {
-    "replay": "Replay the NC program of a job: remove material, compute cutting forces, archive the run.",
+    "replay": "Replay an NC program, or the job of one: remove material, compute cutting forces, archive the run.",
+    "job": "Draft a job file from an NC program: tools from its comments, stock from its motions, resolution to suit "
+    "them.",
     "view": "Show an archived run, or an archived comparison, in the rerun viewer.",
     "info": "Print the contents of an archive: summary of the run, program, stock, tools, messages, attached files.",
     "export": "Write every force sample of a run as CSV or Parquet.",

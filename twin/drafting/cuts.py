@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +54,8 @@ class Feed(NamedTuple):
 
     def only(self, chosen: NDArray[np.bool_]) -> Feed:
         """Some of the motions."""
-        return Feed(*(column[chosen] for column in self))
+        columns: tuple[Any, ...] = tuple(column[chosen] for column in self)
+        return Feed(*columns)
 
     @property
     def time_s(self) -> FloatArray:
@@ -98,7 +99,7 @@ class Cuts:
 
 
 def cuts_of(
-    program: Program, dialect: str, *, tool: int = 0, radii_mm: Mapping[int, float] | None = None, **more: object
+    program: Program, dialect: str, *, tool: int = 0, radii_mm: Mapping[int, float] | None = None, **more: Any
 ) -> Cuts:
     """Run a program.
 
@@ -118,7 +119,7 @@ def cuts_of(
         start_mm=_HOME,
         tools=tools,
         tool=tool,
-        **more,  # type: ignore[arg-type]
+        **more,
     )
     collector = _Collector()
     for part in motion_arrays(program, dialect=dialect, settings=settings):
@@ -222,7 +223,7 @@ def _lengths(part: MotionArrays) -> tuple[FloatArray, FloatArray]:
     along = part.end_mm - part.start_mm
     lengths, sideways = np.linalg.norm(along, axis=1), np.hypot(along[:, 0], along[:, 1])
     for plane, chosen, _, swept, radius in _arcs(part):
-        rise = along[chosen, PLANE_AXES[plane][2]]  # type: ignore[index]
+        rise = along[chosen, PLANE_AXES[plane][2]]
         lengths[chosen] = np.hypot(radius * np.abs(swept), rise)
         sideways[chosen] = lengths[chosen]
     return lengths, sideways
@@ -233,7 +234,7 @@ def _extremes(part: MotionArrays) -> tuple[FloatArray, FloatArray]:
     low, high = np.minimum(part.start_mm, part.end_mm), np.maximum(part.start_mm, part.end_mm)
     for plane, chosen, start, swept, radius in _arcs(part):
         first, last = np.minimum(start, start + swept), np.maximum(start, start + swept)
-        for axis, phase in zip(PLANE_AXES[plane][:2], (0.0, 0.5 * np.pi), strict=True):  # type: ignore[index]
+        for axis, phase in zip(PLANE_AXES[plane][:2], (0.0, 0.5 * np.pi), strict=True):
             centre = part.centre_mm[chosen, axis]
             for bound, choose, turn, sign in ((high, np.maximum, 0.0, 1.0), (low, np.minimum, np.pi, -1.0)):
                 at = phase + turn

@@ -9,7 +9,6 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.drafting.cuts import Cuts, Feed
 from twin.drafting.notes import Notes
-from twin.drafting.program_text import ProgramText
 from twin.drafting.tools import MILLS, DraftTool
 
 _INCH_MM = 25.4
@@ -23,7 +22,7 @@ _CHIP_PART = 0.125
 _LONG_DIAMETERS, _EQUAL, _PATTERN = 3.0, 0.01, 4
 
 
-def doubts(text: ProgramText, cuts: Cuts, tools: Sequence[DraftTool], top_mm: float, notes: Notes) -> None:
+def doubts(cuts: Cuts, tools: Sequence[DraftTool], top_mm: float, notes: Notes) -> None:
     """Note where the comments and the motions of a program contradict each other.
 
     Args:
@@ -60,8 +59,8 @@ def _depth(tool: DraftTool, feed: Feed) -> Iterator[str]:
     lowest = float(feed.low_mm[:, 2].min())
     if stated is not None and abs(stated - lowest) > _DEPTH_MM:
         yield (
-            f"its comment states a lowest Z of {stated:.4g} mm, the program goes to {lowest:.4g} mm: the comment may be "
-            "that of another program, or in another unit"
+            f"its comment states a lowest Z of {stated:.4g} mm, the program goes to {lowest:.4g} mm: the comment may "
+            "be that of another program, or in another unit"
         )
 
 
@@ -88,8 +87,8 @@ def _stepover(tool: DraftTool, feed: Feed) -> Iterator[str]:
             stepover = _common(np.diff(offsets))
             if stepover is not None and stepover > tool.diameter_mm * (1.0 + _EQUAL):
                 yield (
-                    f"passes at Z{height:g} are {stepover:.4g} mm apart, more than D{tool.diameter_mm:g} mm: ridges remain "
-                    f"between them, or the comment has the wrong diameter"
+                    f"passes at Z{height:g} are {stepover:.4g} mm apart, more than D{tool.diameter_mm:g} mm: ridges "
+                    "remain between them, or the comment has the wrong diameter"
                 )
                 return
 
@@ -115,7 +114,7 @@ def _chip(tool: DraftTool, feed: Feed) -> Iterator[str]:
     worst = int(np.argmax(chips))
     if chips[worst] > _CHIP_PART * tool.diameter_mm:
         yield (
-            f"line {int(turning.line[worst])}: a feed per tooth of {chips[worst]:.3g} mm (F{turning.feed_mm_min[worst]:g} mm/min, "
-            f"S{turning.spindle_rpm[worst]:g}) is absurd for D{tool.diameter_mm:g} mm: check F, S and the diameter; forces "
-            "from it mean nothing"
+            f"line {int(turning.line[worst])}: a feed per tooth of {chips[worst]:.3g} mm "
+            f"(F{turning.feed_mm_min[worst]:g} mm/min, S{turning.spindle_rpm[worst]:g}) is absurd for "
+            f"D{tool.diameter_mm:g} mm: check F, S and the diameter; forces from it mean nothing"
         )

@@ -9,21 +9,20 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from gcode.dialects import DIALECTS
 from gcode.errors import GcodeError
 from gcode.flow.interpreter import taken_dialect
 from gcode.language.program import Program, read_program
+from twin.drafting.comments.program_text import ProgramText
+from twin.drafting.comments.stock_posts import stock_comment
 from twin.drafting.cuts import Cuts, cuts_of
 from twin.drafting.doubts import doubts
 from twin.drafting.estimate import Estimate, estimate
 from twin.drafting.fineness import Fineness, fineness_of
 from twin.drafting.from_library import library_tools
 from twin.drafting.notes import Assumption, Notes
-from twin.drafting.program_text import ProgramText
 from twin.drafting.settings import DraftSettings
-from twin.drafting.stock import StockBox, stock_of
-from twin.drafting.stock_posts import stock_comment
+from twin.drafting.stock import CutShape, StockBox, stock_of
 from twin.drafting.tables import DraftTable, file_text
 from twin.drafting.tools import DraftTool, completed, stated_tools, tool_table
 from twin.errors import ReplayError
@@ -74,7 +73,7 @@ def draft_job(
     path: str | PathLike[str] | None = None,
     **values: Any,
 ) -> JobDraft:
-    """Draft a job from an NC program: dialect, tools, stock, work offsets, resolution.
+    r"""Draft a job from an NC program: dialect, tools, stock, work offsets, resolution.
 
     What the program states, in its blocks and in the comments of its post, is used; the rest is assumed, each value
     with a comment in the file and an entry in ``assumptions``. Nothing is written.
@@ -96,7 +95,7 @@ def draft_job(
 
     Example:
         >>> draft = twin.draft_job("part.nc", material="Al7075-T6")
-        >>> print(*draft.assumptions, sep="\\n")
+        >>> print(*draft.assumptions, sep="\n")
         >>> run = twin.replay(draft.job())
     """
     given = changed(DraftSettings, settings, values, "draft_job")
@@ -117,13 +116,14 @@ class _Drafting:
         self.notes = Notes()
         dialect, notice = taken_dialect(self.program, given.dialect)
         self.dialect = dialect.name
-        self.dialect_reason = notice.text if notice is not None else "given"
+        self.dialect_reason = "" if notice is None else notice.text.partition(": ")[2]
+        self.others = [name for name in DIALECTS if name != self.dialect] if given.dialect == "auto" else []
         self.more: dict[str, Any] = {"m_codes": dict.fromkeys(given.m_codes, "none")}
 
     def draft(self) -> JobDraft:
         """All steps."""
         tool = self.given.tool or 0
-        cuts = self._run(tool)
+        cuts = self._first_run(tool)
         if not len(cuts.feed.tool):
             raise ReplayError(f"{self.file}: the program has no feed motion; there is nothing to cut")
         if 0 in cuts.tools:
@@ -135,15 +135,16 @@ class _Drafting:
         stock = self._stock(cuts, tools)
         inside = cuts.feed.only(cuts.feed.low_mm[:, 2] < stock.high_mm[2])
         mills = [t.diameter_mm for t in tools if t.cuts] or [t.diameter_mm for t in tools]
-        fine = self._fineness(fineness_of(inside, mills, stock.size_mm))
-        doubts(self.text, cuts, tools, stock.high_mm[2], self.notes)
+        thinnest = min(t.library.get("diameter_mm", t.tip_mm) if t.library else t.tip_mm for t in tools)
+        fine = self._fineness(fineness_of(inside, mills, stock.size_mm, thinnest))
+        doubts(cuts, tools, float(stock.high_mm[2]), self.notes)
         tables = [
             self._program_table(tool),
             self._machine_table(cuts),
             stock.table,
             *self._tool_tables(cuts, tools, float(stock.high_mm[2])),
             *self._cutting_tables(tools),
-            self._simulation_table(fine, tools),
+            self._simulation_table(fine),
             self._output_table(),
         ]
         return JobDraft(
@@ -156,6 +157,22 @@ class _Drafting:
             tables=tuple(tables),
         )
 
+    def _first_run(self, tool: int) -> Cuts:
+        """Run the program in the likeliest dialect; one that is refused there, in the first dialect that takes it."""
+        try:
+            return self._run(tool)
+        except GcodeError as error:
+            refused, first = error, self.dialect
+        for name in self.others:
+            self.dialect = name
+            try:
+                cuts = self._run(tool)
+            except GcodeError:
+                continue
+            self.dialect_reason = f"{first} refuses line {refused.place.line}: {refused.problem}"
+            return cuts
+        raise refused
+
     def _run(self, tool: int, radii_mm: Mapping[int, float] | None = None) -> Cuts:
         """Run the program; arcs whose centres do not fit are tried with absolute ones."""
         try:
@@ -164,7 +181,9 @@ class _Drafting:
             if error.code != "arc-radius" or "arc_centres" in self.more:
                 raise
             try:
-                cuts = cuts_of(self.program, self.dialect, tool=tool, radii_mm=radii_mm, **self.more, arc_centres="absolute")
+                cuts = cuts_of(
+                    self.program, self.dialect, tool=tool, radii_mm=radii_mm, **self.more, arc_centres="absolute"
+                )
             except GcodeError:
                 raise error from None
             self.more["arc_centres"] = "absolute"
@@ -174,9 +193,9 @@ class _Drafting:
 
     def _first_tool(self) -> int:
         """The tool in the spindle at the start of a program that cuts before its first tool change."""
-        known = list(stated_tools(self.text, [], Notes()))
+        known = [n for n in stated_tools(self.text, [], Notes()) if n]
         words = [word.number for word in self.text.tool_words if word.number]
-        tool = (words or known or [1])[0]
+        tool = self.text.commented_tool or (words or known or [1])[0]
         self.notes.assume("program", f"T{tool} in the spindle at the start", "it cuts before its first tool change")
         return tool
 
@@ -196,15 +215,22 @@ class _Drafting:
             offsets = ", ".join(f"D{d}" for d in sorted(cuts.compensated[number]))
             radius = radii.get(number, 0.0)
             self.notes.assume(
-                f"T{number}", f"radius {radius:g} mm in {offsets}", "cutter compensation; a post may expect the wear only"
+                f"T{number}",
+                f"radius {radius:g} mm in {offsets}",
+                "cutter compensation; a post may expect the wear only",
             )
         return self._run(tool, radii)
 
     def _stock(self, cuts: Cuts, tools: list[DraftTool]) -> StockBox:
         radii = {t.number: 0.5 * t.diameter_mm for t in tools}
+        facing = {t.number for t in tools if t.kind == "face mill"}
         stated = stock_comment(self.text.comments, self.text.unit)
         given = self.given
-        return stock_of(cuts.feed, radii, stated, given.stock, given.margin_mm, self.notes, self.target.parent)
+        shape = CutShape.of(cuts.feed, radii, facing)
+        stock = stock_of(shape, stated, given.stock, given.margin_mm, self.notes, self.target.parent)
+        if cuts.offsets[0] != "G54":
+            stock.table.add("wcs", cuts.offsets[0])
+        return stock
 
     def _fineness(self, fine: Fineness) -> Fineness:
         given = self.given
@@ -218,9 +244,9 @@ class _Drafting:
     def _program_table(self, tool: int) -> DraftTable:
         table = DraftTable(name="program")
         table.add("file", Path(os.path.relpath(self.file, self.target.parent)).as_posix())
-        table.add("dialect", self.dialect, self.dialect_reason)
+        table.add("dialect", self.dialect, f"assumed: {self.dialect_reason}" if self.dialect_reason else "")
         if self.given.dialect == "auto":
-            self.notes.assume("program", f"dialect {self.dialect}", self.dialect_reason.partition(": ")[2])
+            self.notes.assume("program", f"dialect {self.dialect}", self.dialect_reason)
         if not self.text.states_unit:
             table.add("units", "mm", "assumed: the program has no G20 or G21")
             self.notes.assume("program", "lengths in mm", "it has no G20 or G21")
@@ -263,7 +289,9 @@ class _Drafting:
         tables = []
         for number in sorted(set(rows) - {tool.number for tool in tools}):
             table = DraftTable(name="tools", listed=True)
-            table.comments.append(f"row {number} of the offset table, which T{rows[number].number} uses (H{number}, D{number})")
+            table.comments.append(
+                f"row {number} of the offset table, which T{rows[number].number} uses (H{number}, D{number})"
+            )
             table.add("number", number)
             table.add("kind", "flat")
             table.add("diameter_mm", rows[number].diameter_mm)
@@ -298,12 +326,14 @@ class _Drafting:
             return []
         return [table]
 
-    def _simulation_table(self, fine: Fineness, tools: list[DraftTool]) -> DraftTable:
+    def _simulation_table(self, fine: Fineness) -> DraftTable:
         table = DraftTable(name="simulation")
         note = "" if fine.pitch_reason == "given" else f"assumed: {fine.pitch_reason}"
         table.add("slice_pitch_mm", fine.pitch_mm, note)
         table.add("step_mm", fine.pitch_mm)
-        table.add("angle_step_deg", fine.angle_deg, "" if fine.angle_reason == "given" else f"assumed: {fine.angle_reason}")
+        table.add(
+            "angle_step_deg", fine.angle_deg, "" if fine.angle_reason == "given" else f"assumed: {fine.angle_reason}"
+        )
         table.add("axial_step_mm", min(fine.pitch_mm, 0.2))
         if note:
             self.notes.assume("simulation", f"slice pitch and step {fine.pitch_mm:g} mm", fine.pitch_reason)

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+#: Order of subjects; tools come after these, the resolution last.
+_ORDER = {"program": 0, "machine": 1, "stock": 2, "simulation": 4}
+_TOOLS = 3
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Assumption:
@@ -38,6 +42,11 @@ class Notes:
     def lines(self) -> list[str]:
         """The assumptions, one line for each subject and reason."""
         groups: dict[tuple[str, str], list[str]] = {}
-        for one in self.assumptions:
+        for one in sorted(self.assumptions, key=lambda one: _ORDER.get(one.subject, _TOOLS)):
             groups.setdefault((one.subject, one.reason), []).append(one.value)
-        return [f"{', '.join(values)} ({subject}: {reason})" for (subject, reason), values in groups.items()]
+        return [_line(subject, reason, values) for (subject, reason), values in groups.items()]
+
+
+def _line(subject: str, reason: str, values: list[str]) -> str:
+    reason = reason.removesuffix(" it") + " them" if len(values) > 1 and reason.endswith("state it") else reason
+    return f"{', '.join(values)} ({subject}: {reason})"

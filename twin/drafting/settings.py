@@ -1,4 +1,4 @@
-"""What a user may give in addition to an NC program: options of ``twin job`` and ``twin replay``, keywords of Python."""
+"""Values given in addition to an NC program: options of ``twin job`` and ``twin replay``, keywords of Python."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ class DraftSettings(Table):
     """Values for a job that is drafted from an NC program; lengths in mm."""
 
     material: Annotated[str | None, Key(metavar="NAME", unset="no forces")] = Field(
-        default=None, description="material of the workpiece, for the cutting coefficients; twin materials lists the names"
+        default=None,
+        description="material of the workpiece, for the cutting coefficients; twin materials lists the names",
     )
     tools: Annotated[FilePath | None, Key(metavar="LIBRARY", unset="the program's comments")] = Field(
         default=None, description="tool library in which the program's tool numbers are looked up"
     )
     stock: Annotated[str | None, Key(metavar="STOCK", unset="around the cutting motions")] = Field(
         default=None,
-        description="stock: 'box X Y Z', 'cylinder D H' or the name of an STL file; a box or a cylinder is centred over "
-        "the cutting motions, with its top where cutting begins, or 'at X Y Z': centre in X and Y, top in Z",
+        description="stock: 'box X Y Z', 'cylinder D H' or the name of an STL file; a box or a cylinder is centred "
+        "over the cutting motions, with its top where cutting begins, or 'at X Y Z': centre in X and Y, top in Z",
     )
     margin_mm: float = Field(
         default=0.0, ge=0.0, description="stock around the cutting motions on each side; not with a stock that is given"

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.drafting.comments.stock_posts import StockStatement
 from twin.drafting.cuts import Feed
 from twin.drafting.notes import Notes
-from twin.drafting.stock_posts import StockStatement
 from twin.drafting.tables import DraftTable
 from twin.errors import StockError
 from twin.workpiece.solids.from_mesh import load_mesh
@@ -25,6 +25,8 @@ _ABOVE_SHARE = 0.05
 #: Share of the path at a level from which it counts as a level, and least stock above a level, mm.
 _LEVEL_SHARE, _ABOVE_LEVEL_MM = 0.05, 1.0
 _SAME_MM = 1e-3
+#: A path that is all this far below Z0 has its zero elsewhere than on the stock, mm.
+_DEEPEST_MM = 30.0
 _EXPECTED = "'box X Y Z', 'cylinder D H', either with 'at X Y Z' (centre in X and Y, top in Z), or an STL file"
 _N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 _AT = re.compile(rf"\s+at\s+({_N})\s+({_N})\s+({_N})\s*$", re.IGNORECASE)
@@ -68,28 +70,35 @@ def top_of_cut(feed: Feed) -> Top:
     """The height at which cutting begins, from feed motions that are not plunges.
 
     Programs have their zero on the stock more often than not: where no more than lead-ins and lead-outs are above Z0,
-    that is the top. Otherwise it is the highest level plus one step-down, or the highest point of the path; material
-    can in no case be above the height from which all plunges begin.
+    that is the top. Otherwise it is the highest level plus one step-down, at most where plunges begin, or the highest
+    point of the path.
     """
     side = feed.only(feed.sideways)
     if not len(side.tool):
-        lowest = float(feed.low_mm[:, 2].min())
-        starts = float(feed.start_mm[feed.first, 2].min()) if feed.first.any() else lowest
-        return Top(z_mm=0.0, reason="at Z0") if lowest < 0.0 <= starts else Top(z_mm=starts, reason="at the first plunge")
-    middle = 0.5 * (side.low_mm[:, 2] + side.high_mm[:, 2])
-    total = float(side.length_mm.sum())
+        return _top_of_holes(feed)
+    cutting = feed.only(feed.sideways & ~_entries(feed))
+    side = cutting if len(cutting.tool) else side
     plunges_mm = float(feed.start_mm[feed.first, 2].max()) if feed.first.any() else np.inf
-    above = float(side.length_mm[middle > _SAME_MM].sum()) / total
-    levels = _levels(side, total)
-    if above <= _ABOVE_SHARE and plunges_mm >= -_SAME_MM:
+    middle = 0.5 * (side.low_mm[:, 2] + side.high_mm[:, 2])
+    above = float(side.length_mm[middle > _SAME_MM].sum()) / float(side.length_mm.sum())
+    levels = _levels(side)
+    highest = float(side.high_mm[:, 2].max())
+    if above <= _ABOVE_SHARE and (highest > -_DEEPEST_MM or plunges_mm >= 0.0):
         if levels and abs(levels[0]) < _SAME_MM:
             return _over_level(levels, plunges_mm)
         return Top(z_mm=0.0, reason="at Z0: no more than entries and lead-outs are above it")
-    body = side.only(~_entries(side))
-    highest = float((body if len(body.tool) else side).high_mm[:, 2].max())
-    if levels and levels[0] >= highest - _SAME_MM - (levels[0] - levels[1] if len(levels) > 1 else _ABOVE_LEVEL_MM):
+    step = levels[0] - levels[1] if len(levels) > 1 else _ABOVE_LEVEL_MM
+    if levels and levels[0] >= highest - step - _SAME_MM:
         return _over_level(levels, plunges_mm)
     return Top(z_mm=min(highest, plunges_mm), reason="at the highest point of the cutting motions")
+
+
+def _top_of_holes(feed: Feed) -> Top:
+    """The top of a program that only plunges."""
+    starts = float(feed.start_mm[feed.first, 2].min()) if feed.first.any() else float(feed.high_mm[:, 2].max())
+    if float(feed.low_mm[:, 2].min()) < 0.0 <= starts:
+        return Top(z_mm=0.0, reason="at Z0: plunges begin above it and end below it")
+    return Top(z_mm=starts, reason="where plunges begin")
 
 
 def _over_level(levels: list[float], plunges_mm: float) -> Top:
@@ -101,35 +110,76 @@ def _over_level(levels: list[float], plunges_mm: float) -> Top:
     return Top(z_mm=levels[0] + step, reason=f"{what} above the highest level, Z{levels[0]:.4g}")
 
 
-def _levels(side: Feed, total_mm: float) -> list[float]:
-    """Heights at which a good part of the path is level, from the top."""
-    heights = np.round(side.low_mm[side.level, 2], 3)
-    lengths = side.length_mm[side.level]
-    found, at = np.unique(heights, return_inverse=True)
-    sums = np.bincount(at, weights=lengths, minlength=len(found))
-    share = _LEVEL_SHARE if len(found) < 1.0 / _LEVEL_SHARE else 0.5 / len(found)
-    return [float(z) for z, length in zip(found[::-1], sums[::-1], strict=True) if length >= share * total_mm]
+def _levels(side: Feed) -> list[float]:
+    """Heights at which a good part of a tool's path is level, from the top: those of the tool of the highest one."""
+    highest: list[float] = []
+    for tool in dict.fromkeys(side.tool.tolist()):
+        own = side.only(side.tool == tool)
+        heights = np.round(own.low_mm[own.level, 2], 3)
+        found, at = np.unique(heights, return_inverse=True)
+        sums = np.bincount(at, weights=own.length_mm[own.level], minlength=len(found))
+        least = min(_LEVEL_SHARE, 0.5 / max(len(found), 1)) * float(own.length_mm.sum())
+        levels = [float(z) for z, length in zip(found[::-1], sums[::-1], strict=True) if length >= least]
+        highest = max(highest, levels, key=lambda some: some[0] if some else -np.inf)
+    return highest
 
 
-def _entries(side: Feed) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Motions that go down or up: ramps, helices, lead-ins and lead-outs; of a 3D path, its slopes too."""
-    return side.first | (~side.level & (side.length_mm < 1.0))
+def _entries(feed: Feed) -> NDArray[np.bool_]:
+    """Motions that go down without a break after a rapid: plunges, ramps and helices into the material."""
+    stops = np.cumsum(feed.end_mm[:, 2] > feed.start_mm[:, 2] - _SAME_MM)
+    first = feed.first.copy()
+    first[:1] = True
+    begun = np.maximum.accumulate(np.where(first, np.arange(len(first)), 0))
+    before = np.concatenate([[0], stops])[begun]
+    inside: NDArray[np.bool_] = stops == before
+    return inside
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CutShape:
+    """The box of the cutting motions.
+
+    Attributes:
+        feed: all feed motions.
+        top: height at which cutting begins.
+        low_mm, high_mm: corners of the box of the motions below it, grown sideways by the tools' radii, shape (3,).
+    """
+
+    feed: Feed
+    top: Top
+    low_mm: FloatArray
+    high_mm: FloatArray
+
+    @classmethod
+    def of(cls, feed: Feed, radius_mm: Mapping[int, float], facing: Collection[int] = ()) -> CutShape:
+        """The shape of a program's cuts.
+
+        Args:
+            feed: its feed motions, at least one.
+            radius_mm: largest radius of each tool.
+            facing: face mills: they begin and end off the stock, so other tools determine its sides, if there are any.
+        """
+        top = top_of_cut(feed)
+        below = feed.low_mm[:, 2] < top.z_mm - _SAME_MM
+        part = feed.only(below) if below.any() else feed
+        others = ~np.isin(part.tool, list(facing)) & part.sideways
+        sides = part.only(others) if others.any() else part
+        radii = np.array([radius_mm.get(tool, 0.0) for tool in sides.tool.tolist()])
+        grow = np.stack([radii, radii, np.zeros(len(radii))], axis=1)
+        if facing and not others.any():
+            grow *= np.ptp([sides.low_mm.min(axis=0), sides.high_mm.max(axis=0)], axis=0) < 2.0 * radii.max()
+        low, high = (sides.low_mm - grow).min(axis=0), (sides.high_mm + grow).max(axis=0)
+        low[2], high[2] = part.low_mm[:, 2].min(), top.z_mm
+        return cls(feed=feed, top=top, low_mm=low, high_mm=high)
 
 
 def stock_of(
-    feed: Feed,
-    radius_mm: Mapping[int, float],
-    stated: StockStatement | None,
-    requested: str | None,
-    margin_mm: float,
-    notes: Notes,
-    folder: Path,
+    shape: CutShape, stated: StockStatement | None, requested: str | None, margin_mm: float, notes: Notes, folder: Path
 ) -> StockBox:
     """The stock of a job.
 
     Args:
-        feed: the feed motions of the program, at least one.
-        radius_mm: largest radius of each tool.
+        shape: the box of the cutting motions.
         stated: what the program's comments state.
         requested: the option, see `DraftSettings.stock`; it counts first.
         margin_mm: stock around the cutting motions.
@@ -140,39 +190,27 @@ def stock_of(
         StockError: a request that cannot be read.
         MeshError: an STL file that cannot be used.
     """
-    top = top_of_cut(feed)
     if requested is not None:
-        box = _requested(requested, feed, radius_mm, top, notes, folder)
+        box = _requested(requested, shape, notes, folder)
     elif stated is not None:
-        box = _stated(stated, feed, radius_mm, top, notes)
+        box = _stated(stated, shape, notes)
     else:
-        box = _around(feed, radius_mm, top, margin_mm, notes)
-    _check(box, feed, notes)
+        box = _around(shape, margin_mm, notes)
+    _check(box, shape.feed, notes)
     return box
 
 
-def cut_box(feed: Feed, radius_mm: Mapping[int, float], top_mm: float) -> tuple[FloatArray, FloatArray]:
-    """The box of the motions below the top, grown sideways by the tools' radii; its lower and upper corner."""
-    below = feed.low_mm[:, 2] < top_mm - _SAME_MM
-    part = feed.only(below) if below.any() else feed
-    radii = np.array([radius_mm.get(tool, 0.0) for tool in part.tool.tolist()])
-    grow = np.stack([radii, radii, np.zeros(len(radii))], axis=1)
-    low, high = (part.low_mm - grow).min(axis=0), (part.high_mm + grow).max(axis=0)
-    return low, np.array([high[0], high[1], top_mm])
-
-
-def _around(feed: Feed, radius_mm: Mapping[int, float], top: Top, margin_mm: float, notes: Notes) -> StockBox:
-    low, high = cut_box(feed, radius_mm, top.z_mm)
-    side = np.array([margin_mm, margin_mm, 0.0])
-    low, high = low - side, high + side
-    low[2] = min(low[2], top.z_mm - 0.1) - max(margin_mm, _FLOOR_MM)
+def _around(shape: CutShape, margin_mm: float, notes: Notes) -> StockBox:
+    side, floor = np.array([margin_mm, margin_mm, 0.0]), max(margin_mm, _FLOOR_MM)
+    low, high = shape.low_mm - side, shape.high_mm + side
+    low[2] = min(low[2], high[2] - 0.1) - floor
     grown = "grown by the tool radius" + (f" and {margin_mm:g} mm" if margin_mm else "")
-    reason = f"the cutting motions, {grown}; top {top.reason}; {max(margin_mm, _FLOOR_MM):g} mm below the lowest cut"
+    reason = f"the cutting motions, {grown}; top {shape.top.reason}; {floor:g} mm below the lowest cut"
     return _box(low, high, reason, notes)
 
 
 def _box(low: FloatArray, high: FloatArray, reason: str, notes: Notes) -> StockBox:
-    low, high = np.floor(low * 1000.0 + 1e-6) / 1000.0, np.ceil(high * 1000.0 - 1e-6) / 1000.0
+    low, high = np.floor(low * 1000.0 + 1e-6) / 1000.0 + 0.0, np.ceil(high * 1000.0 - 1e-6) / 1000.0 + 0.0
     words = ", ".join(f"{axis} {a:g} to {b:g}" for axis, a, b in zip("XYZ", low, high, strict=True))
     notes.assume("stock", f"box {words}", reason)
     table = DraftTable(name="stock", comments=[f"assumed: {reason}"])
@@ -180,18 +218,16 @@ def _box(low: FloatArray, high: FloatArray, reason: str, notes: Notes) -> StockB
     return StockBox(low_mm=low, high_mm=high, table=table)
 
 
-def _stated(
-    stated: StockStatement, feed: Feed, radius_mm: Mapping[int, float], top: Top, notes: Notes
-) -> StockBox:
+def _stated(stated: StockStatement, shape: CutShape, notes: Notes) -> StockBox:
     """The box that a comment states, placed as it states, else over the cutting motions."""
     size = np.array(stated.size_mm)
     given = [value is not None for value in stated.low_mm]
-    low = _placed(size, feed, radius_mm, top)
+    low = _placed(size, shape)
     low = np.array([float(a) if a is not None else b for a, b in zip(stated.low_mm, low.tolist(), strict=True)])
     table = DraftTable(name="stock", comments=[f"size stated in line {stated.line} of the program"])
     if not all(given):
         axes = " and ".join(axis for axis, known in zip("XYZ", given, strict=True) if not known)
-        reason = f"line {stated.line} states the size only; centred over the cutting motions, top {top.reason}"
+        reason = f"line {stated.line} states the size only; centred over the cutting motions, top {shape.top.reason}"
         words = ", ".join(f"{axis} from {a:g}" for axis, a, known in zip("XYZ", low, given, strict=True) if not known)
         notes.assume("stock", f"position {words}", reason)
         table.comments.append(f"assumed: position along {axes}: {reason}")
@@ -199,17 +235,14 @@ def _stated(
     return StockBox(low_mm=low, high_mm=low + size, table=table)
 
 
-def _placed(size: FloatArray, feed: Feed, radius_mm: Mapping[int, float], top: Top) -> FloatArray:
+def _placed(size: FloatArray, shape: CutShape) -> FloatArray:
     """Lower corner of a box that is centred over the cutting motions, its top where cutting begins."""
-    low, high = cut_box(feed, radius_mm, top.z_mm)
-    middle = 0.5 * (low + high)
-    corner: FloatArray = np.array([middle[0] - 0.5 * size[0], middle[1] - 0.5 * size[1], top.z_mm - size[2]])
+    middle = 0.5 * (shape.low_mm + shape.high_mm)
+    corner: FloatArray = np.array([*(middle - 0.5 * size)[:2], shape.top.z_mm - size[2]])
     return np.round(corner, 3)
 
 
-def _requested(
-    text: str, feed: Feed, radius_mm: Mapping[int, float], top: Top, notes: Notes, folder: Path
-) -> StockBox:
+def _requested(text: str, shape: CutShape, notes: Notes, folder: Path) -> StockBox:
     at = _AT.search(text)
     words = _AT.sub("", text).strip()
     box, cylinder = _BOX.fullmatch(words), _CYLINDER.fullmatch(words)
@@ -221,21 +254,25 @@ def _requested(
     if min(numbers) <= 0.0:
         raise StockError(f"--stock {text!r}: expected lengths above 0, in mm: {_EXPECTED}")
     size = np.array(numbers if box else [numbers[0], numbers[0], numbers[1]])
-    low = _placed(size, feed, radius_mm, top)
+    low = _placed(size, shape)
     if at is not None:
         x, y, z = (float(n) for n in at.groups())
         low = np.array([x - 0.5 * size[0], y - 0.5 * size[1], z - size[2]])
     else:
         middle = low + 0.5 * size
-        where = f"centre X{middle[0]:g} Y{middle[1]:g}, top Z{top.z_mm:g}"
-        notes.assume("stock", where, f"--stock has no position: centred over the cutting motions, top {top.reason}")
+        where = f"centre X{middle[0]:g} Y{middle[1]:g}, top Z{shape.top.z_mm:g}"
+        notes.assume(
+            "stock", where, f"--stock has no position: centred over the cutting motions, top {shape.top.reason}"
+        )
     table = DraftTable(name="stock", comments=[f"given: {text}"])
     high = low + size
     if box:
         table.add("box_mm", {"min": low.tolist(), "max": high.tolist()})
     else:
         centre = (low + 0.5 * size)[:2].tolist()
-        table.add("cylinder_mm", {"centre": centre, "diameter": numbers[0], "min": float(low[2]), "max": float(high[2])})
+        table.add(
+            "cylinder_mm", {"centre": centre, "diameter": numbers[0], "min": float(low[2]), "max": float(high[2])}
+        )
     return StockBox(low_mm=low, high_mm=high, table=table)
 
 
@@ -256,7 +293,8 @@ def _check(box: StockBox, feed: Feed, notes: Notes) -> None:
     """Warns of a stock that the cutting motions miss, or go far below."""
     side = feed.only(feed.sideways) if feed.sideways.any() else feed
     low, high = side.low_mm.min(axis=0), side.high_mm.max(axis=0)
-    apart = [a for a, l, h, bl, bh in zip("XYZ", low, high, box.low_mm, box.high_mm, strict=True) if h < bl or l > bh]
+    missed = (high < box.low_mm) | (low > box.high_mm)
+    apart = [axis for axis, miss in zip("XYZ", missed.tolist(), strict=True) if miss]
     if apart:
         notes.warnings.append(
             f"the cutting motions miss the stock along {' and '.join(apart)}: stock "

@@ -52,6 +52,10 @@ class DraftTable:
         """The value of a key, None if it has none."""
         return next((entry.value for entry in self.entries if entry.key == key), None)
 
+    def values(self) -> dict[str, Any]:
+        """The keys that have a value."""
+        return {entry.key: entry.value for entry in self.entries if entry.value is not None}
+
     def lines(self) -> Iterator[str]:
         """The table as lines of a file."""
         yield from (f"# {harmless(comment)}" for comment in self.comments)

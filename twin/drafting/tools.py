@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from twin.drafting.comments.program_text import ProgramText, Unit
+from twin.drafting.comments.tool_posts import ToolComment, tool_comments
+from twin.drafting.comments.tool_words import ToolStatement, rounded
 from twin.drafting.notes import Notes
-from twin.drafting.program_text import ProgramText, Unit
 from twin.drafting.tables import DraftTable
-from twin.drafting.tool_posts import ToolComment, tool_comments
-from twin.drafting.tool_words import ToolStatement
 
 #: Kinds that a replay cuts with, by the kind of the job file that represents them.
 MILLS = {"flat": "flat", "ball": "ball", "bull": "bull", "taper": "taper", "face mill": "flat", "chamfer mill": "taper"}
@@ -21,10 +21,11 @@ _UNKNOWN_MM: Mapping[Unit, float] = {"mm": 6.0, "inch": 6.35}
 _HELIX_DEG = 30.0
 #: Face mills: flutes by diameter, mm.
 _FACE_TEETH = ((40.0, 4), (63.0, 5), (80.0, 6), (125.0, 7))
-_TIP_MM = 0.2
+_TIP_MM = 0.3
 _TAPER_HALF_DEG, _CHAMFER_HALF_DEG = 3.0, 45.0
 _CORNER_PART = 0.1
 #: Length of the flutes of a usual end mill, in diameters, and the least that they extend above the material, mm.
+_FACE_FLUTES_MM = 10.0
 _FLUTE_DIAMETERS, _FLUTE_MORE_MM, _FLUTE_STEP_MM = 2.5, 1.0, 0.5
 _SAME = 0.005
 
@@ -57,6 +58,11 @@ class DraftTool:
         """Diameter."""
         assert self.states.diameter_mm is not None
         return self.states.diameter_mm
+
+    @property
+    def tip_mm(self) -> float:
+        """Diameter at the tip: chamfer and engraving tools are named by their largest diameter."""
+        return min(_TIP_MM, 0.5 * self.diameter_mm) if self.kind == "chamfer mill" else self.diameter_mm
 
     @property
     def cuts(self) -> bool:
@@ -115,6 +121,8 @@ def completed(number: int, states: ToolStatement | None, unit: Unit, notes: Note
             f"T{number}: the program does not state its diameter; drawn with D{size:g} mm, and no forces are computed "
             f"for it; give --tools LIBRARY, or diameter_mm in the job file (twin job)"
         )
+    if states.kind == "flat" and states.corner_radius_mm and states.diameter_mm:
+        states = replace(states, kind=rounded(states.corner_radius_mm, states.diameter_mm))
     if states.kind is None:
         states = states.over(ToolStatement(kind="flat"))
         notes.assume(subject, "a flat end mill", _NOT_STATED)
@@ -145,20 +153,25 @@ def tool_table(tool: DraftTool, depth_mm: float, cutting: Mapping[str, Any] | No
 
 def _from_comments(table: DraftTable, tool: DraftTool, depth_mm: float, notes: Notes) -> None:
     s, kind = tool.states, MILLS.get(tool.kind, "flat")
-    if kind == "flat" and s.corner_radius_mm and tool.kind in MILLS:
+    if tool.kind == "face mill" and s.corner_radius_mm:
         kind = "bull"
     if s.name:
         table.add("name", s.name)
-    assumed = _Assumed(table, f"T{tool.number}", notes)
+    assumed = _Assumed(table, tool, notes)
     table.add("kind", kind, "" if kind == tool.kind else f"a {tool.kind}, represented as {kind}")
     if tool.known:
-        diameter = tool.diameter_mm if kind != "taper" else _tip_mm(tool)
-        table.add("diameter_mm", diameter)
+        diameter = tool.tip_mm
+        tip = tool.kind == "chamfer mill"
+        table.add("diameter_mm", diameter, "assumed: the program does not state the diameter of the tip" if tip else "")
+        if tip:
+            notes.assume(f"T{tool.number}", f"D{diameter:g} mm at the tip", _NOT_STATED)
     else:
         table.add("diameter_mm", tool.diameter_mm, "CHECK: the program does not state it; no forces for this tool")
     if kind == "bull":
         corner = s.corner_radius_mm
-        assumed.add("corner_radius_mm", corner, max(0.1, round(_CORNER_PART * tool.diameter_mm, 1)), "corner radius {:g} mm")
+        assumed.add(
+            "corner_radius_mm", corner, max(0.1, round(_CORNER_PART * tool.diameter_mm, 1)), "corner radius {:g} mm"
+        )
     half = None
     if kind == "taper":
         default = _CHAMFER_HALF_DEG if tool.kind == "chamfer mill" else _TAPER_HALF_DEG
@@ -172,8 +185,9 @@ def _from_comments(table: DraftTable, tool: DraftTool, depth_mm: float, notes: N
 class _Assumed:
     """Adds keys with the program's value, or a default that is noted."""
 
-    def __init__(self, table: DraftTable, subject: str, notes: Notes) -> None:
-        self._table, self._subject, self._notes = table, subject, notes
+    def __init__(self, table: DraftTable, tool: DraftTool, notes: Notes) -> None:
+        self._table, self._subject, self._notes = table, f"T{tool.number}", notes
+        self._noted = tool.kind in MILLS
 
     def add(self, key: str, stated: Any, default: Any, words: str, reason: str = _NOT_STATED) -> Any:
         """Add a key; returns its value."""
@@ -181,7 +195,8 @@ class _Assumed:
             self._table.add(key, stated)
             return stated
         self._table.add(key, default, f"assumed: {reason}")
-        self._notes.assume(self._subject, words.format(default), reason)
+        if self._noted:
+            self._notes.assume(self._subject, words.format(default), reason)
         return default
 
 
@@ -196,21 +211,17 @@ def _helix(tool: DraftTool) -> float:
     return 0.0 if tool.kind in ("face mill", "chamfer mill") or tool.kind not in MILLS else _HELIX_DEG
 
 
-def _tip_mm(tool: DraftTool) -> float:
-    """Diameter at the tip: chamfer and engraving tools are named by their largest diameter."""
-    return min(_TIP_MM, 0.5 * tool.diameter_mm) if tool.kind == "chamfer mill" else tool.diameter_mm
-
-
 def _flutes(assumed: _Assumed, tool: DraftTool, depth_mm: float, half_deg: float | None) -> None:
     size = tool.diameter_mm
     if tool.kind == "chamfer mill" and half_deg is not None and tool.states.flute_length_mm is None:
-        length = 0.5 * (size - _tip_mm(tool)) / math.tan(math.radians(half_deg))
+        length = 0.5 * (size - tool.tip_mm) / math.tan(math.radians(half_deg))
         assumed.add("flute_length_mm", None, round(max(length, 0.1), 3), "flute length {:g} mm", "up to its diameter")
         return
-    needed = max(_FLUTE_DIAMETERS * size, depth_mm + _FLUTE_MORE_MM)
+    usual = _FLUTE_DIAMETERS * size if tool.kind != "face mill" else _FACE_FLUTES_MM
+    needed = max(usual, depth_mm + _FLUTE_MORE_MM)
     length = min(math.ceil(needed / _FLUTE_STEP_MM) * _FLUTE_STEP_MM, 1000.0)
     reason = _NOT_STATED
-    if length > _FLUTE_DIAMETERS * size + _FLUTE_STEP_MM:
+    if length > usual + _FLUTE_STEP_MM:
         reason = f"the program goes {depth_mm:.4g} mm deep, {depth_mm / size:.2g} diameters"
     assumed.add("flute_length_mm", tool.states.flute_length_mm, length, "flute length {:g} mm", reason)
 
@@ -219,7 +230,7 @@ def _from_library(table: DraftTable, tool: DraftTool, depth_mm: float, notes: No
     values = {key: value for key, value in (tool.library or {}).items() if key != "number"}
     for key, value in values.items():
         table.add(key, value)
-    assumed = _Assumed(table, f"T{tool.number}", notes)
+    assumed = _Assumed(table, tool, notes)
     reason = "the library does not state it"
     if "teeth" not in values:
         assumed.add("teeth", None, _teeth(tool), "{} flutes", reason)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-_NC = "an NC program; name it in a job file as program.file and run twin replay on that, or check it with: gcode check"
+_NC = "an NC program; make its job file with twin job, or check it with: gcode check"
 _RUN = "the recording of a run; see: twin info"
 _SUFFIXES: dict[str, str] = {
     **dict.fromkeys((".nc", ".ngc", ".tap", ".cnc", ".gcode", ".mpf", ".eia", ".min", ".nct"), _NC),
@@ -21,6 +22,19 @@ _TABLES = (
     ("part", "a mold job", "twin mold"),
     ("cuts", "a file of test cuts", "twin identify"),
 )
+
+
+def is_nc_program(path: Path) -> bool:
+    """Whether a file is an NC program rather than a settings file, by its suffix, else by its text."""
+    if path.suffix.lower() == ".toml" or not path.is_file():
+        return _SUFFIXES.get(path.suffix.lower()) == _NC
+    if path.suffix.lower() in _SUFFIXES:
+        return _SUFFIXES[path.suffix.lower()] == _NC
+    try:
+        tomllib.loads(path.read_text("utf-8", errors="replace"))
+    except tomllib.TOMLDecodeError:
+        return True
+    return False
 
 
 def kind_by_suffix(path: Path) -> str | None:

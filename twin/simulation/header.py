@@ -34,7 +34,7 @@ def run_header(job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], plan
         planned_time_s=planned_time_s,
         parameters=parameters,
         attachments=tuple(_attachments(job)),
-        job=job_key(job.path),
+        job=job_key(job.path) or job_key(Path(job.program.file)),
     )
 
 

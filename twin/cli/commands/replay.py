@@ -10,10 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from twin.cli import exit_codes
+from twin.cli.options import options_from
+from twin.drafting.settings import DraftSettings
 
 if TYPE_CHECKING:
+    from twin.cli.commands.replay_source import Source
     from twin.cli.commands.replay_work import Outcome
-    from twin.job import Job
+
+#: Keys of a draft that have options of their own, for jobs too.
+_OWN_OPTIONS = ("material", "dialect", "tool", "m_codes")
 
 
 class Engine(StrEnum):
@@ -33,8 +38,23 @@ class Dialect(StrEnum):
     AUTO = "auto"
 
 
+@options_from(DraftSettings, "drafting", omit=_OWN_OPTIONS, panel="Job of an NC program")
 def replay(
-    job_file: Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML).", show_default=False)],
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="JOB|PART.nc", help="Job file (TOML), or an NC program alone.", show_default=False),
+    ],
+    drafting: Mapping[str, Any],
+    save_job: Annotated[
+        Path | None,
+        typer.Option(
+            "--save-job",
+            metavar="FILE",
+            help="Write the job of an NC program to a file, to be changed and replayed.",
+            show_default=False,
+            rich_help_panel="Job of an NC program",
+        ),
+    ] = None,
     view: Annotated[bool, typer.Option("--view", help="Show the run in rerun while it is computed.")] = False,
     rrd: Annotated[
         Path | None,
@@ -106,62 +126,43 @@ def replay(
         int | None, typer.Option(min=1, max=64, help="Number of threads; all cores if not given.", show_default=False)
     ] = None,
 ) -> None:
-    """Replay the NC program of a job: remove material, compute cutting forces, archive the run.
+    """Replay an NC program, or the job of one: remove material, compute cutting forces, archive the run.
 
-    Missing folders of outputs are created; outputs that were made from the same job file are replaced. Ctrl-C stops the
-    replay; its outputs are complete up to there. A second Ctrl-C discards them. A replay that ends with an error leaves
-    no outputs.
+    An NC program without a job file gets one in memory, as twin job drafts it: every assumption is printed, and the
+    archive is written to the current folder. Forces need --material.
+
+    Missing folders of outputs are created; outputs that were made from the same job or program are replaced. Ctrl-C
+    stops the replay; its outputs are complete up to there. A second Ctrl-C discards them. A replay that ends with an
+    error leaves no outputs.
     """
+    from twin.cli.commands.replay_source import source_of
     from twin.cli.commands.replay_work import replay_job
     from twin.cli.show.progress import progress
-    from twin.job import load_job
     from twin.sinks.outputs import opened
 
-    job = load_job(job_file)
-    job = job if material is None else _with_material(job, material, quiet=quiet)
-    job = job.without_forces() if no_forces else job
+    own = {"dialect": dialect and dialect.value, "tool": tool, "m_codes": tuple(m_code) if m_code else None}
+    options = {"material": material, **own}
+    given = {key: value for key, value in options.items() if value is not None}
+    source = source_of(file, {**drafting, **given}, save_job, force=force, quiet=quiet or as_json)
+    job = source.job.without_forces() if no_forces else source.job
     job = job.with_simulation(store=engine.value) if engine is not None else job
-    job = job.with_program(**_program_values(dialect, tool, m_code, job.program.m_codes))
     mcap, rrd = mcap or job.output.mcap, rrd or job.output.rrd
-    with opened(mcap, rrd, view=view, force=force, job=job.path) as write, progress(quiet=quiet or as_json) as line:
+    with opened(mcap, rrd, view=view, force=force, job=source.key) as write, progress(quiet=quiet or as_json) as line:
         outcome = replay_job(job, line, write, strict=strict, threads=threads)
     if as_json:
-        _print_json(outcome, {"job": job_file, "mcap": mcap, "rrd": rrd}, job.output.force_on)
+        _print_json(outcome, source, {"mcap": mcap, "rrd": rrd}, job.output.force_on)
     elif not quiet:
         _print_summary(outcome, {"archive": mcap, "recording": rrd}, job.output.force_on)
     _print_warnings(outcome, strict=strict)
     raise typer.Exit(_exit_code(outcome, strict=strict))
 
 
-def _with_material(job: Job, name: str, *, quiet: bool) -> Job:
-    """The job with a material's coefficients, and a note where they replace others."""
-    changed = job.with_material(name)
-    if job.forces and not quiet:
-        from twin.cli.console import note
-
-        material = changed.cutting.material if changed.cutting is not None else name
-        note(f"--material: the coefficients of {material} replace those of the job")
-    return changed
-
-
-def _program_values(
-    dialect: Dialect | None, tool: int | None, m_code: list[int] | None, known: Mapping[int, str]
-) -> dict[str, Any]:
-    """Values of the job's ``[program]`` table that options replace."""
-    values: dict[str, Any] = {"m_codes": {**known, **dict.fromkeys(m_code, "none")}} if m_code else {}
-    if dialect is not None:
-        values["dialect"] = dialect.value
-    if tool is not None:
-        values["tool"] = tool
-    return values
-
-
-def _print_json(outcome: Outcome, files: dict[str, Path | None], force_on: str) -> None:
+def _print_json(outcome: Outcome, source: Source, files: dict[str, Path | None], force_on: str) -> None:
     from twin.cli.console import print_json
     from twin.cli.show.as_json import replay_object
 
     names = {key: None if path is None else str(path) for key, path in files.items()}
-    print_json(replay_object(outcome, force_on) | names)
+    print_json(replay_object(outcome, force_on) | {"job": str(source.file)} | names | source.assumed)
 
 
 def _print_summary(outcome: Outcome, files: dict[str, Path | None], force_on: str) -> None:

@@ -6,14 +6,16 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from twin.drafting.program_text import Comment, Unit
-from twin.drafting.tool_words import length_mm
+from twin.drafting.comments.program_text import Comment, Unit
+from twin.drafting.comments.tool_words import length_mm
 
 _N = r"(-?(?:\d+\.?\d*|\.\d+))"
 _U = r"\s*(MM|IN(?:CH(?:ES)?)?\b|\"|'')?"
 _BLOCK = re.compile(rf"STOCK/BLOCK\s*,\s*{_N}\s*,\s*{_N}\s*,\s*{_N}\s*,\s*{_N}\s*,\s*{_N}\s*,\s*{_N}", re.IGNORECASE)
 _CORNER = re.compile(rf"STOCK(MIN|MAX)\s*:\s*{_N}{_U}\s*,\s*{_N}{_U}\s*,\s*{_N}{_U}", re.IGNORECASE)
-_VECTRIC = re.compile(rf"^(?:MATERIAL\s+SIZE\s*:?\s*)?X\s*=\s*{_N}\s*,\s*Y\s*=\s*{_N}\s*,\s*Z\s*=\s*{_N}\s*$", re.IGNORECASE)
+_VECTRIC = re.compile(
+    rf"^(?:MATERIAL\s+SIZE\s*:?\s*)?X\s*=\s*{_N}\s*,\s*Y\s*=\s*{_N}\s*,\s*Z\s*=\s*{_N}\s*$", re.IGNORECASE
+)
 _VECTRIC_HEAD = re.compile(r"^MATERIAL\s+SIZE", re.IGNORECASE)
 _VECTRIC_Z = re.compile(r"Z\s+ORIGIN\s+FOR\s+MATERIAL\s*=\s*(.*)", re.IGNORECASE)
 _VECTRIC_XY = re.compile(r"XY\s+ORIGIN\s+FOR\s+MATERIAL\s*=\s*(.*)", re.IGNORECASE)

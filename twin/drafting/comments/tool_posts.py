@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from twin.drafting.program_text import Comment, Unit
-from twin.drafting.tool_words import ToolStatement, described, length_mm, rounded
+from twin.drafting.comments.program_text import Comment, Unit
+from twin.drafting.comments.tool_words import ToolStatement, described, length_mm, rounded
 
 _N = r"-?(?:\d+[ -]\d+/\d+|\d+/\d+|\d+\.?\d*|\.\d+)"
 
@@ -50,35 +50,39 @@ class ToolPost:
             return None
 
 
+_UNIT_WORDS: Mapping[str, Unit] = {"metric": "mm", "imperial": "inch"}
+
+
 def _statement(groups: Mapping[str, str | None], unit: Unit, text: str) -> ToolStatement:
     """The values of a match; what its groups do not hold is taken from its description."""
-    unit = {"metric": "mm", "imperial": "inch", "mm": "mm", "in": "inch"}.get((groups.get("unit") or "").lower(), unit)  # type: ignore[assignment]
+    given = {name: value for name, value in groups.items() if value is not None}
+    unit = _UNIT_WORDS.get(given.get("unit", "").lower(), unit)
 
     def length(name: str) -> float | None:
-        value = groups.get(name)
-        return None if value is None else length_mm(value, groups.get("mark"), unit)
+        return length_mm(given[name], given.get("mark"), unit) if name in given else None
 
-    words = described(groups.get("text") or "", unit)
-    diameter, corner = length("d") or words.diameter_mm, length("cr")
-    kind = words.kind
-    if corner is None and groups.get("r") is not None:
-        corner = length("r")
-    if corner and diameter and (kind is None or kind == "flat"):
-        kind = rounded(corner, diameter)
-    elif corner is not None and kind is None:
-        kind = "flat"
+    words = described(given.get("text", ""), unit)
+    diameter = length("d") or words.diameter_mm
+    corner = length("cr") if "cr" in given else length("r")
     return ToolStatement(
-        number=int(groups["number"]) if groups.get("number") else None,
+        number=int(given["number"]) if "number" in given else None,
         name=words.name or " ".join(text.split()),
-        kind=kind,
+        kind=_kind(words.kind, corner, diameter),
         diameter_mm=diameter,
         corner_radius_mm=corner if corner is not None else words.corner_radius_mm,
-        teeth=int(groups["z"]) if groups.get("z") else words.teeth,
+        teeth=int(given["z"]) if "z" in given else words.teeth,
         helix_deg=words.helix_deg,
         flute_length_mm=length("len") or words.flute_length_mm,
-        angle_deg=float(groups["angle"]) or None if groups.get("angle") else words.angle_deg,
+        angle_deg=float(given["angle"]) or None if "angle" in given else words.angle_deg,
         z_min_mm=length("zmin"),
     )
+
+
+def _kind(named: str | None, corner_mm: float | None, diameter_mm: float | None) -> str | None:
+    """Kind as named; of an end mill, as its corner radius makes it."""
+    if corner_mm is None or named not in (None, "flat"):
+        return named
+    return rounded(corner_mm, diameter_mm) if corner_mm and diameter_mm else "flat"
 
 
 TOOL_POSTS: tuple[ToolPost, ...] = (
@@ -88,7 +92,11 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         rf"(?:\s+TAPER=(?P<angle>{_N})\s*DEG)?(?:\s*-\s*ZMIN=(?P<zmin>{_N}))?(?:\s*-\s*(?P<text>.*))?$",
         example="T3 D=0.125 CR=0.0625 - ZMIN=-0.54 - BALL END MILL",
         states={
-            **{"number": 3, "kind": "ball", "diameter_mm": 3.175, "corner_radius_mm": 1.5875, "z_min_mm": -13.716},
+            "number": 3,
+            "kind": "ball",
+            "diameter_mm": 3.175,
+            "corner_radius_mm": 1.5875,
+            "z_min_mm": -13.716,
             "name": "BALL END MILL",
         },
         unit="inch",
@@ -99,7 +107,11 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         rf"(?:,\s*LEN\s*=\s*(?P<len>{_N}))?",
         example="Tool 4: Flat End Mill 3 Flutes, Diam = 3mm, Len = 15.00mm",
         states={
-            **{"number": 4, "kind": "flat", "diameter_mm": 3.0, "teeth": 3, "flute_length_mm": 15.0},
+            "number": 4,
+            "kind": "flat",
+            "diameter_mm": 3.0,
+            "teeth": 3,
+            "flute_length_mm": 15.0,
             "name": "Flat End Mill 3 Flutes",
         },
     ),
@@ -109,7 +121,10 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         rf"(?:.*?\bC(?:R|ORNER\s+RAD(?:IUS)?)\.?\s*-\s*(?P<cr>{_N}))?",
         example="T15 | 1/2 BULL ENDMILL .06 RAD | H15 | D15 | TOOL DIA. - .5",
         states={
-            **{"number": 15, "kind": "bull", "diameter_mm": 12.7, "corner_radius_mm": 1.524},
+            "number": 15,
+            "kind": "bull",
+            "diameter_mm": 12.7,
+            "corner_radius_mm": 1.524,
             "name": "1/2 BULL ENDMILL .06 RAD",
         },
         unit="inch",
@@ -127,7 +142,10 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         pattern=rf"^TOOL/MILL\s*,\s*(?P<d>{_N})\s*,\s*(?P<cr>{_N})\s*,\s*(?P<len>{_N})\s*(?:,\s*(?P<angle>{_N}))?",
         example="TOOL/MILL,6.35, 3.17, 19.05, 0.00",
         states={
-            **{"kind": "ball", "diameter_mm": 6.35, "corner_radius_mm": 3.17, "flute_length_mm": 19.05},
+            "kind": "ball",
+            "diameter_mm": 6.35,
+            "corner_radius_mm": 3.17,
+            "flute_length_mm": 19.05,
             "name": "TOOL/MILL,6.35, 3.17, 19.05, 0.00",
         },
     ),
@@ -137,13 +155,15 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         r"(?:.*?\bUNIT\s*=\s*(?P<unit>METRIC|IMPERIAL))?",
         example="tool#=2 flute=0.25 len=1 unit=imperial",
         states={
-            **{"number": 2, "diameter_mm": 6.35, "flute_length_mm": 25.4},
+            "number": 2,
+            "diameter_mm": 6.35,
+            "flute_length_mm": 25.4,
             "name": "tool#=2 flute=0.25 len=1 unit=imperial",
         },
     ),
     ToolPost(
         post="FreeCAD (tool controller)",
-        pattern=r"^TC\s*\d*\s*:\s*(?P<text>.*)$",
+        pattern=r"^(?:BEGIN\s+OPERATION\s*:\s*|PATH\s*:\s*)?TC\s*\d*\s*:\s*(?P<text>.*)$",
         example='TC: 1/4" endmill 2 flute',
         states={"kind": "flat", "diameter_mm": 6.35, "teeth": 2, "name": '1/4" endmill 2 flute'},
     ),
@@ -158,7 +178,11 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         pattern=r"^TOOL\s+DESCRIPTION\s*=\s*(?P<text>.*)$",
         example="Tool Description = endmill [3/8] 3FL R:0.0 loc:25.4 carbide dia:9.525",
         states={
-            **{"kind": "flat", "diameter_mm": 9.525, "corner_radius_mm": 0.0, "teeth": 3, "flute_length_mm": 25.4},
+            "kind": "flat",
+            "diameter_mm": 9.525,
+            "corner_radius_mm": 0.0,
+            "teeth": 3,
+            "flute_length_mm": 25.4,
             "name": "endmill [3/8] 3FL R:0.0 loc:25.4 carbide dia:9.525",
         },
     ),
@@ -167,7 +191,9 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         pattern=rf"^DIAM(?:ETER)?\s*[:=]\s*(?P<d>{_N})\s*(?:,\s*)?(?:CORNER\s+)?RAD(?:IUS)?\s*[:=]\s*(?P<r>{_N})",
         example="DIAM: 12.00 RADIUS: 1.50",
         states={
-            **{"kind": "bull", "diameter_mm": 12.0, "corner_radius_mm": 1.5},
+            "kind": "bull",
+            "diameter_mm": 12.0,
+            "corner_radius_mm": 1.5,
             "name": "DIAM: 12.00 RADIUS: 1.50",
         },
     ),
@@ -176,7 +202,8 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         pattern=rf"TOOL\s+NUMBER\s*=\s*(?P<number>\d+)\s+CUTTER\s+DIAMETER\s*=\s*(?P<d>{_N})",
         example="SEQ= 3 TOOL NUMBER = 2 CUTTER DIAMETER = 12.00",
         states={
-            **{"number": 2, "diameter_mm": 12.0},
+            "number": 2,
+            "diameter_mm": 12.0,
             "name": "SEQ= 3 TOOL NUMBER = 2 CUTTER DIAMETER = 12.00",
         },
     ),
@@ -198,7 +225,10 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         pattern=r"^TOOL\s*(?:NO\.?|NUMBER|#)?\s*[-:=]?\s*(?P<number>\d+)\s*[-:=|,\s]\s*(?P<text>.*[A-Z].*)$",
         example="TOOL 17 - 3/8 EM - DESC: 0.3771 DIA, 2 FLUTE, CARBIDE MAT",
         states={
-            **{"number": 17, "kind": "flat", "diameter_mm": 9.57834, "teeth": 2},
+            "number": 17,
+            "kind": "flat",
+            "diameter_mm": 9.57834,
+            "teeth": 2,
             "name": "3/8 EM - DESC: 0.3771 DIA, 2 FLUTE, CARBIDE MAT",
         },
         unit="inch",
@@ -208,7 +238,11 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
         pattern=r"^T\s*(?P<number>\d+)\s*[-:=|,.\s]\s*(?P<text>.*[A-Z].*)$",
         example="T4 - BULL NOSE MILL D10 R0.5 Z4",
         states={
-            **{"number": 4, "kind": "bull", "diameter_mm": 10.0, "corner_radius_mm": 0.5, "teeth": 4},
+            "number": 4,
+            "kind": "bull",
+            "diameter_mm": 10.0,
+            "corner_radius_mm": 0.5,
+            "teeth": 4,
             "name": "BULL NOSE MILL D10 R0.5 Z4",
         },
     ),

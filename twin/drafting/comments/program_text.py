@@ -17,6 +17,7 @@ _COMMENT = re.compile(r"\(([^()]*(?:\([^()]*\)[^()]*)*)\)|\((.*)$|;(.*)$")
 _TOOL = re.compile(r"T\s*(?:(\d+)|(?=[#\[]))", re.IGNORECASE)
 _MOTION = re.compile(r"(?:^|[^A-Z])[XYZ]\s*[-+.\d\[#]", re.IGNORECASE)
 _UNITS = re.compile(r"G\s*0*(20|21|70|71)(?![\d.])", re.IGNORECASE)
+_COMMENTED_CHANGE = re.compile(r"^M0?6\s*T(\d+)|^T(\d+)\s*M0?6\b", re.IGNORECASE)
 _TAPE = re.compile(r"^\s*(?:%|[O:]\s*\d+\s*$)")
 
 
@@ -73,6 +74,12 @@ class ProgramText:
     def states_unit(self) -> bool:
         """Whether a G20 or G21 is in the program."""
         return bool(self._units)
+
+    @property
+    def commented_tool(self) -> int | None:
+        """Tool of a tool change that a post wrote as a comment, for controls without a changer: ``( M6 T3 )``."""
+        found = (_COMMENTED_CHANGE.search(comment.text) for comment in self.comments)
+        return next((int(match[1] or match[2]) for match in found if match is not None), None)
 
     def tool_at(self, line: int) -> ToolWord | None:
         """The T word that a comment on a line belongs to.

@@ -8,35 +8,32 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from twin.drafting.program_text import Unit
+from twin.drafting.comments.program_text import Unit
 
 _INCH_MM = 25.4
 #: Kinds by the words that name them; the first that is found counts, so special tools come before general ones.
 _KINDS: tuple[tuple[str, str], ...] = (
     ("probe", r"PROBE|TASTER|EDGE ?FINDER"),
-    ("spot drill", r"SPOT|CENT(?:ER|RE)[ _-]?DRILL|NC[ -]?ANBOHRER|ANBOHRER|ZENTRIERBOHRER"),
-    ("flat", r"SLOT[ _-]?DRILL"),
+    ("spot drill", r"SPOT|CENT(?:ER|RE)[ -]?DRILL|(?:NC[ -]?)?ANBOHRER|ZENTRIERBOHRER"),
+    ("flat", r"SLOT[ -]?DRILL"),
     ("drill", r"DRILL|BOHRER|FORET|BROCA|WIERTLO|PUNTA"),
-    ("tap", r"TAP|(?:RIGHT|LEFT)[ _-]?(?:HAND[ _-]?)?TAP|TAPPING|GEWINDEBOHRER|TARAUD"),
-    ("thread mill", r"THREAD[ _-]?MILL(?:ING)?|GEWINDEFR[AÄ]E?SER"),
+    ("tap", r"TAP|TAPPING|GEWINDEBOHRER|TARAUD"),
+    ("thread mill", r"THREAD[ -]?MILL(?:ING)?|GEWINDEFR(?:AE|Ä|A)SER"),
     ("reamer", r"REAM(?:ER|ING)?|REIBAHLE"),
-    ("boring bar", r"BORING(?:[ _-](?:BAR|HEAD))?|BORE[ _-]?BAR"),
-    ("dovetail mill", r"DOVE[ _-]?TAIL"),
-    ("slot mill", r"T[ _-]?SLOT|SLOT[ _-]?MILL|WOODRUFF|KEY[ _-]?(?:SEAT|CUTTER)|SLITTING"),
-    ("lollipop mill", r"LOLLI[ _-]?POP|UNDERCUT"),
-    ("counterbore", r"COUNTER[ _-]?BORE|C[ -]?BORE"),
-    ("chamfer mill", r"CHAMFER|CHAM|V[ _-]?BIT|V[ _-]?GROOVE|ENGRAV\w*|COUNTER[ _-]?SINK|C[ -]?SINK|FASENFR\w*|GRAVIER\w*"),
+    ("boring bar", r"BORING(?:[ -](?:BAR|HEAD))?|BORE[ -]?BAR"),
+    ("dovetail mill", r"DOVE[ -]?TAIL"),
+    ("slot mill", r"T[ -]?SLOT|SLOT[ -]?MILL|WOODRUFF|KEY[ -]?(?:SEAT|CUTTER)|SLITTING"),
+    ("lollipop mill", r"LOLLI[ -]?POP|UNDERCUT"),
+    ("counterbore", r"COUNTER[ -]?BORE|C[ -]?BORE"),
+    ("chamfer mill", r"CHAM(?:FER)?|V[ -]?(?:BIT|GROOVE)|ENGRAV\w*|C(?:OUNTER)?[ -]?SINK|FASENFR\w*|GRAVIER\w*"),
     ("taper", r"TAPER(?:ED)?|CONICAL|KONISCH"),
-    ("ball", r"BALL(?:[ _-]?(?:NOSE|END|MILL|ENDMILL))?|BALLNOSE|BALLMILL|SPHER\w*|KUGEL\w*|BOULE|SF[EÉ]RIC\w*|ESF[EÉ]RIC\w*|BOLA|KULOWY"),
-    ("bull", r"BULL(?:[ _-]?(?:NOSE|END|MILL|ENDMILL))?|BULLNOSE|TOR(?:US|IC|IQUE|OID\w*)|TORUSFR\w*|(?:CORNER[ _-]?)RAD(?:IUS)?(?![\w.]*\s*[:=]?\s*0+\.?0*\b)"),
-    ("face mill", r"FACE[ _-]?MILL(?:ING)?|SHELL[ _-]?MILL|FLY[ _-]?CUTTER|PLANFR\w*|FACING|MESSERKOPF"),
-    (
-        "flat",
-        r"END[ _-]?MILL\d*|ENDMILL\d*|E/?M|FLAT|SQUARE|ROUTER|UP[ _-]?CUT|DOWN[ _-]?CUT|COMPRESSION|(?:SINGLE|O)[ _-]?FLUTE"
-        r"|MILL|CUTTER|SCHAFTFR\w*|FR(?:AE|Ä|A)SER\d*|FREZA|FREZ|FRAISE|FRESA|CYLIND\w*|\d+[ _-]?FLUTE",
-    ),
+    ("ball", r"BALL(?:[ -]?(?:NOSE|END|MILL|ENDMILL))?|SPHER\w*|KUGEL\w*|BOULE|E?SF[EÉ]RIC\w*|BOLA|KULOWY"),
+    ("bull", r"BULL(?:[ -]?(?:NOSE|END|MILL|ENDMILL))?|TOR(?:US|IC|IQUE|OID\w*)|TORUSFR\w*"),
+    ("face mill", r"FACE[ -]?MILL(?:ING)?|SHELL[ -]?MILL|FLY[ -]?CUTTER|PLANFR\w*|FACING|MESSERKOPF"),
+    ("flat", r"END[ -]?MILL\d*|E/?M|FLAT|SQUARE|ROUTER|(?:UP|DOWN)[ -]?CUT|COMPRESSION|\w+[ -]?FLUTE|MILL|CUTTER"),
+    ("flat", r"SCHAFTFR\w*|FR(?:AE|Ä|A)SER\d*|FREZA|FREZ|FRAISE|FRESA|CYLIND\w*"),
 )
-_KIND = tuple((kind, re.compile(rf"(?<![A-Z]){words}(?![A-Z])".replace(words, f"(?:{words})"))) for kind, words in _KINDS)
+_KIND = tuple((kind, re.compile(rf"(?<![A-Z])(?:{words})(?![A-Z])")) for kind, words in _KINDS)
 
 _NUMBER = r"(?:\d+[ -]\d+/\d+|\d+/\d+|\d*\.\d+|\d+\.?)"
 _UNIT = r"(?:MM|MILLIMET\w*|INCH\w*|IN\b|''|\"|”|″)"
@@ -63,7 +60,9 @@ _TEETH = re.compile(
     r"(?<![\d.])(\d{1,2})\s*[-_]?\s*(?:FLUTES?|FLT?S?|TEETH|TOOTH|ZAHN\w*|Z)(?![A-Z])|(?<![A-Z0-9])Z\s*=?\s*(\d{1,2})(?![\d.])"
     r"|(?:FLUTES|TEETH)\s*[:=]\s*(\d{1,2})"
 )
-_FLUTE_WORDS = {"SINGLE FLUTE": 1, "O FLUTE": 1, "SINGLE-FLUTE": 1, "O-FLUTE": 1}
+#: Corner radius from which an end mill is a ball-nose one, in diameters.
+_BALL_PART = 0.495
+_FLUTE_WORDS = {"SLOT DRILL": 2, "SINGLE FLUTE": 1, "O FLUTE": 1, "SINGLE-FLUTE": 1, "O-FLUTE": 1}
 _FLUTE_LENGTH = re.compile(rf"\b(?:LOC|LCF|FLUTE[ _-]?LEN(?:GTH)?)\b\.?\s*[:=-]?\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?")
 _HELIX = re.compile(r"\bHELIX\b\s*[:=-]?\s*(\d+(?:\.\d+)?)|(\d+(?:\.\d+)?)\s*(?:DEG(?:REES?)?)?\s*HELIX\b")
 _ANGLE = re.compile(r"(?<![\d.])(\d+(?:\.\d+)?)\s*(?:DEG(?:REES?)?\b|°)|\bANGLE\b\s*[:=]?\s*(\d+(?:\.\d+)?)")
@@ -127,8 +126,8 @@ def kind_in(text: str) -> str | None:
 
 
 def rounded(corner_radius_mm: float, diameter_mm: float) -> str:
-    """Kind of an end mill with a corner radius; posts round both to two decimals."""
-    return "ball" if abs(corner_radius_mm - 0.5 * diameter_mm) <= 1e-3 * diameter_mm + 1e-9 else "bull"
+    """Kind of an end mill with a corner radius; posts round both to two or three decimals."""
+    return "ball" if corner_radius_mm >= _BALL_PART * diameter_mm else "bull"
 
 
 def described(text: str, unit: Unit) -> ToolStatement:

@@ -1,0 +1,1 @@
+"""Comments of NC programs that posts write: tools and stock, in words and in the forms of each post."""
