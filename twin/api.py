@@ -7,7 +7,7 @@ Units are mm, s, N, N·m, W and rad throughout. A mistake of the user's is a `tw
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from os import PathLike
 from pathlib import Path
@@ -15,12 +15,13 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from twin.cli.show.progress import LineProgress, NoProgress, report
 from twin.cli.stop import StopRequest
-from twin.errors import CollisionError, CompareError
+from twin.errors import CollisionError, CompareError, SettingsError
 from twin.job import Job, load_job
 from twin.record import Record
 from twin.run.drive import drive
 from twin.run.run import Run, TemporaryArchive
 from twin.settings.check import checked
+from twin.settings.file_kinds import is_nc_program
 from twin.simulation.replay import Replay
 from twin.sinks.outputs import opened
 
@@ -43,21 +44,23 @@ def replay(
     strict: bool = False,
     progress: bool = False,
     force: bool = False,
+    **drafting: Any,
 ) -> Run:
-    """Replay the NC program of a job: remove material, compute forces at every spindle-angle step.
+    """Replay an NC program, or the job of one: remove material, compute forces at every spindle-angle step.
 
     Only the files given here are written; those in the job's ``[output]`` are for the command line. Without ``mcap``
     the run is kept in a temporary archive (see `Run`). Ctrl-C ends the replay in order: the files given hold it up to
     there, and can be opened with `open_run`.
 
     Args:
-        job_or_path: a job, or the path of a job file (TOML).
+        job_or_path: a job, or the path of a job file (TOML) or of an NC program, whose job `draft_job` drafts.
         mcap: archive to write; it stays the run's file.
         rrd: rerun recording to write.
         threads: how many work on the replay, None for all cores; results do not depend on it.
         strict: end at the first collision with a `CollisionError`; the files given hold the replay up to there.
         progress: show a progress line on standard error, or in the notebook.
         force: replace files that exist.
+        drafting: values for the job of an NC program, e.g. ``material="Al7075-T6"``; see `DraftSettings`.
 
     Returns:
         The run, with forces, summary, events and the machined part.
@@ -71,8 +74,9 @@ def replay(
         >>> run = twin.replay("examples/ball_slot/job.toml")
         >>> run.forces["fx_n"].max(), run.summary.peak_force_n
         >>> run.save("slot.mcap")
+        >>> twin.replay("part.nc", material="Al7075-T6").summary.peak_force_n
     """
-    job = _job(job_or_path)
+    job = _job(job_or_path, drafting)
     archive = TemporaryArchive() if mcap is None else Path(mcap)
     files = archive.path if isinstance(archive, TemporaryArchive) else archive, None if rrd is None else Path(rrd)
     line = LineProgress() if progress else NoProgress()
@@ -110,16 +114,17 @@ def open_run(path: StrPath) -> Run:
     return Run(path)
 
 
-def records(job_or_path: Job | StrPath, *, threads: int | None = None) -> Iterator[Record]:
-    """Replay a job and give its records one by one as they are computed; nothing is kept or written.
+def records(job_or_path: Job | StrPath, *, threads: int | None = None, **drafting: Any) -> Iterator[Record]:
+    """Replay a job or an NC program and give its records one by one as they are computed; nothing is kept or written.
 
     First a `RunHeader`, then `NcEvent`, `Step` (with its force samples), `Collision` and `WorkpiecePatch` in the order
     of machine time, at last a `RunSummary`. Memory does not grow with the program. `Run.records` gives the same of a
     run that is kept.
 
     Args:
-        job_or_path: a job, or the path of a job file (TOML).
+        job_or_path: a job, or the path of a job file (TOML) or of an NC program, as `replay` takes it.
         threads: how many work on the replay, None for all cores.
+        drafting: values for the job of an NC program, as `replay` takes them.
 
     Raises:
         TwinError, gcode.GcodeError: as `replay`, when the first record is asked for.
@@ -129,7 +134,7 @@ def records(job_or_path: Job | StrPath, *, threads: int | None = None) -> Iterat
         ...     if isinstance(record, twin.Step) and record.engagement.cutting:
         ...         print(record.nc_line, record.engagement.axial_depth_mm)
     """
-    with Replay(_job(job_or_path), threads=threads) as replaying:
+    with Replay(_job(job_or_path, drafting), threads=threads) as replaying:
         yield from replaying
 
 
@@ -279,5 +284,13 @@ def _given(settings: Table | None) -> dict[str, Any]:
     return {} if settings is None else {name: getattr(settings, name) for name in settings.model_fields_set}
 
 
-def _job(job_or_path: Job | StrPath) -> Job:
+def _job(job_or_path: Job | StrPath, drafting: Mapping[str, Any]) -> Job:
+    """A job; values for a draft are only for an NC program."""
+    path = None if isinstance(job_or_path, Job) else Path(job_or_path)
+    if path is not None and is_nc_program(path):
+        from twin.drafting.draft import draft_job
+
+        return draft_job(path, **drafting).job()
+    if drafting:
+        raise SettingsError("replay", [f"{', '.join(drafting)}: expected only with an NC program"])
     return job_or_path if isinstance(job_or_path, Job) else load_job(job_or_path)

@@ -81,7 +81,7 @@ def test_a_job_in_another_encoding_names_it(tmp_path: Path, encoding: str, messa
 @pytest.mark.parametrize(
     ("name", "text", "kind"),
     [
-        ("slot.nc", "G21\n", "an NC program; name it in a job file as program.file and run twin replay on that"),
+        ("slot.nc", "G21\n", "an NC program; make its job file with twin job"),
         ("slot.txt", "%\nO1\nG21\n", "an NC program; "),
         ("run.mcap", "\x89MCAP0", "the recording of a run; see: twin info"),
         ("part.stl", "solid\n", "an STL file; "),

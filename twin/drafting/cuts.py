@@ -75,7 +75,7 @@ class Feed(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Cuts:
-    """What a program moves.
+    """Motions of a program in numbers.
 
     Attributes:
         feed: its feed motions.

@@ -343,7 +343,7 @@ class _Drafting:
 
     def _output_table(self) -> DraftTable:
         table = DraftTable(name="output")
-        table.add("mcap", f"{self.target.stem}.mcap")
+        table.add("mcap", f"{self.file.stem}.mcap")
         return table
 
 

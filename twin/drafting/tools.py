@@ -71,7 +71,7 @@ class DraftTool:
 
 
 def stated_tools(text: ProgramText, used: Sequence[int], notes: Notes) -> dict[int, ToolStatement]:
-    """What the comments state about each tool; contradictions are noted.
+    """Values that the comments state about each tool; contradictions are noted.
 
     Args:
         used: numbers of the tools that cut, in order.

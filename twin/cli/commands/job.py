@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from twin.cli.common import Json
-from twin.cli.options import options_from
+from twin.cli.options import options_from, settings_from
 from twin.drafting.settings import DraftSettings
 
 
@@ -38,9 +38,8 @@ def job(
     from twin.cli.show.draft_notes import draft_json, print_notes, print_written
     from twin.drafting.draft import draft_job
     from twin.drafting.update import write_draft
-    from twin.settings.check import checked
 
-    settings = checked(DraftSettings, given, "twin job")
+    settings = settings_from(DraftSettings, given, {}, "twin job", "twin job")
     draft = draft_job(program, settings, path=out)
     draft.job()
     written = None if out is None else write_draft(draft, force=force)

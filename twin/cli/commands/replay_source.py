@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from twin.cli.console import note, warn
+from twin.cli.options import settings_from
 from twin.cli.show.draft_notes import assumption_objects, print_notes, print_written
 from twin.drafting.draft import draft_job
 from twin.drafting.settings import DraftSettings
 from twin.drafting.update import write_draft
 from twin.errors import SettingsError
 from twin.job import Job, load_job
-from twin.settings.check import checked
 from twin.settings.file_kinds import is_nc_program
 
 #: Options that a job file has keys for.
@@ -23,7 +23,7 @@ _DRAFT_ONLY = {"tools": "--tools", "stock": "--stock", "margin_mm": "--margin"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
-    """What a command replays.
+    """Source of a replay: a job file or an NC program, and the job.
 
     Attributes:
         file: the file that was named on the command line.
@@ -82,7 +82,7 @@ def _with_material(job: Job, name: str, *, quiet: bool) -> Job:
 
 
 def _drafted(file: Path, given: Mapping[str, Any], save_job: Path | None, *, force: bool, quiet: bool) -> Source:
-    settings = checked(DraftSettings, given, "twin replay")
+    settings = settings_from(DraftSettings, given, {}, "twin replay", "twin replay")
     draft = draft_job(file, settings, path=save_job)
     job = draft.job()
     written = None
@@ -97,6 +97,6 @@ def _drafted(file: Path, given: Mapping[str, Any], save_job: Path | None, *, for
     assumed = {
         "assumptions": assumption_objects(draft),
         "open": list(draft.open),
-        "draft_warnings": list(draft.warnings),
+        "doubts": list(draft.warnings),
     }
     return Source(file=file, job=job, key=job.path if job.path.is_file() else file, assumed=assumed)
