@@ -20,7 +20,7 @@ _OBSTACLES = {
     "circle segment mill": "its curved flank is not modelled",
     "form mill": "its profile is not in the library",
     "missing bit": "the file of the bit is not next to the library",
-    "chamfer mill": "its tip is a point, and a taper tool needs a tip diameter above 0",
+    "chamfer mill": "a taper tool needs an angle and a flat tip, and the library gives no usable ones",
     **dict.fromkeys(("probe", "turning tool", "laser", "jet cutter", "holder"), _NOT_MILLING),
 }
 _UNKNOWN = "the type is not known; expected a flat, ball, bull-nose or taper tool"

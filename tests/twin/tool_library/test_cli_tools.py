@@ -30,7 +30,7 @@ def test_tools_are_listed_with_reasons_and_assumptions(shop: Path, capsys: pytes
     out, err = capsys.readouterr()
     assert err == "" and "\x1b[31m" not in out
     words = " ".join(out.split())
-    assert "shop.tools: 2 tools, Fusion 360; sizes in mm" in words
+    assert "shop.tools: 2 tools, Fusion 360; mm, deg" in words
     assert "3 6 mm ball ball 6 3 2 18 5.8 x 4 32 x 47" in words
     assert 'T4 "6 mm drill ␛[31m" cannot be simulated: its point is not modelled' in words
     assert "all 2 tools: helix angle: not stored in this format" in words

@@ -71,7 +71,14 @@ def test_shapes_of_bits(tmp_path: Path, shape: str, parameters: dict[str, str], 
     assert tool.simulated and not tool.warnings
 
 
-def test_a_v_bit_whose_angle_contradicts_its_sizes_is_not_used(tmp_path: Path) -> None:
+def test_only_the_cone_of_a_v_bit_cuts(tmp_path: Path) -> None:
+    sizes = {"CuttingEdgeAngle": "60 °", "Diameter": "10 mm", "TipDiameter": "0.1 mm", "CuttingEdgeHeight": "1 mm"}
+    tool = only(tmp_path / "a.fctb", freecad_bit(shape="v-bit.fcstd", **sizes))
+    assert tool.flute_length_mm == pytest.approx(4.95 / 0.57735, rel=1e-5)
+    assert tool.shank == ToolCylinder(diameter_mm=6.0, length_mm=pytest.approx(60.0 - 8.5736, rel=1e-4))
+
+
+def test_a_chamfer_mill_whose_angle_contradicts_its_sizes_is_not_used(tmp_path: Path) -> None:
     sizes = {"CuttingEdgeAngle": "20 °", "TipDiameter": "1 mm", "CuttingEdgeHeight": "6 mm"}
     tool = only(tmp_path / "a.fctb", freecad_bit(shape="chamfer.fcstd", **sizes))
     assert not tool.simulated

@@ -15,7 +15,10 @@ from rich.text import Text
 from twin.number_format import plural
 from twin.tool_library import LibraryTool, ToolCylinder, ToolLibrary
 
-_NUMBERS = ("D", "corner", "taper, deg", "teeth", "flutes", "shank", "holder")
+_HEADS = ("T", "name", "kind", "D", "corner", "taper", "teeth", "flutes", "shank", "holder")
+_TEXTS = ("name", "kind")
+#: Width of the column of names, at least.
+_LEAST_NAME = 16
 #: Most remarks below a table.
 _MOST_REMARKS = 12
 
@@ -25,7 +28,7 @@ def print_tools(console: Console, chosen: Iterable[tuple[ToolLibrary, Sequence[L
     for library, tools in chosen:
         if not tools:
             continue
-        title = f"{library.path}: {plural(len(tools), 'tool')}, {library.format}; sizes in mm"
+        title = f"{library.path}: {plural(len(tools), 'tool')}, {library.format}; mm, deg"
         console.print(Text(title, style="bold"))
         console.print(_table(tools))
         remarks = [*_remarks(library, tools)]
@@ -36,14 +39,18 @@ def print_tools(console: Console, chosen: Iterable[tuple[ToolLibrary, Sequence[L
 
 
 def _table(tools: Sequence[LibraryTool]) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("T", justify="right", no_wrap=True)
-    table.add_column("name", overflow="fold", ratio=1)
-    table.add_column("kind", no_wrap=True)
-    for head in _NUMBERS:
-        table.add_column(head, justify="right", no_wrap=True)
-    for tool in tools:
-        table.add_row(*_cells(tool), style="" if tool.simulated else "dim")
+    """A row for each tool, with the columns that any of them needs; those that cannot be simulated are dim."""
+    rows = [_cells(tool) for tool in tools]
+    used = [index for index, head in enumerate(_HEADS) if head in _TEXTS or any(row[index] for row in rows)]
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    for index in used:
+        head = _HEADS[index]
+        if head == "name":
+            table.add_column(head, overflow="fold", min_width=_LEAST_NAME)
+        else:
+            table.add_column(head, justify="left" if head in _TEXTS else "right", no_wrap=True)
+    for tool, row in zip(tools, rows, strict=True):
+        table.add_row(*(row[index] for index in used), style="" if tool.simulated else "dim")
     return table
 
 
@@ -54,11 +61,11 @@ def _cells(tool: LibraryTool) -> list[str]:
 
 
 def _size(value: float | None) -> str:
-    return "" if value is None else f"{value:.5g}"
+    return "" if value is None else f"{value:.4g}"
 
 
 def _cylinder(piece: ToolCylinder | None) -> str:
-    return "" if piece is None else f"{piece.diameter_mm:.4g} x {piece.length_mm:.4g}"
+    return "" if piece is None else f"{piece.diameter_mm:.3g} x {piece.length_mm:.3g}"
 
 
 def _holder(pieces: Sequence[ToolCylinder]) -> str:
@@ -66,7 +73,7 @@ def _holder(pieces: Sequence[ToolCylinder]) -> str:
     if not pieces:
         return ""
     largest, length = max(p.diameter_mm for p in pieces), sum(p.length_mm for p in pieces)
-    return f"{largest:.4g} x {length:.4g}"
+    return f"{largest:.3g} x {length:.3g}"
 
 
 def _remarks(library: ToolLibrary, tools: Sequence[LibraryTool]) -> Iterator[str]:

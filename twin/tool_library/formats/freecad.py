@@ -77,7 +77,7 @@ def bit_tool(data: Mapping[str, Any], path: Path, number: int | None, warnings: 
     word = _word(data)
     kind = kind_of_word(word)
     _read_sizes(fields)
-    kind = _fit_kind(fields, kind, notes)
+    kind = _fit_kind(fields, kind, word, notes)
     holder, holder_name = _holder(fields, path)
     return RawTool(
         source=str(path),
@@ -130,31 +130,44 @@ def _read_sizes(fields: Fields) -> None:
         fields.sizes["corner"] = Size(0.5 * diameter.value - flat.value, f"half of {diameter.text} less {flat.text}")
 
 
-def _fit_kind(fields: Fields, kind: str | None, notes: list[str]) -> str | None:
+def _fit_kind(fields: Fields, kind: str | None, word: str, notes: list[str]) -> str | None:
     """The sizes of a cone; the kind, which is a taper tool for a ball with an angle."""
-    sizes = fields.sizes
     if kind != "bull":
-        sizes.pop("corner", None)
+        fields.sizes.pop("corner", None)
     if kind == "chamfer mill":
-        fields.length("tip", "TipDiameter")
-        angle = fields.angle("taper", "CuttingEdgeAngle")
-        if angle is not None:
-            sizes["taper"] = Size(0.5 * angle.value, f"half of {angle.text}")
-        if "diameter" in sizes:
-            sizes["top"] = sizes["diameter"]
-        _check_cone(fields)
-    elif kind in ("taper", "ball"):
-        angle = fields.angle("taper", "TaperAngle")
-        if angle is not None and kind == "taper":
-            sizes["taper"] = Size(0.5 * angle.value, f"half of {angle.text}")
-        elif angle is not None and angle.value > 0.0:
-            notes.append(f"ball with {angle.text} taken as a tapered ball with this half angle")
-            kind = "taper"
-        if kind == "taper":
-            fields.length("top", "TaperDiameter")
-            if "diameter" in sizes:
-                sizes["corner"] = Size(0.5 * sizes["diameter"].value, f"half of {sizes['diameter'].text}")
+        _fit_chamfer(fields, word)
+    elif kind == "taper" or (kind == "ball" and (fields.angle("taper", "TaperAngle") or Size(0.0, "")).value > 0.0):
+        _fit_tapered_ball(fields, kind, notes)
+        return "taper"
     return kind
+
+
+def _fit_chamfer(fields: Fields, word: str) -> None:
+    """A V-bit or chamfer mill: a cone from its tip to its diameter, half as wide as the angle between its sides."""
+    sizes = fields.sizes
+    fields.length("tip", "TipDiameter")
+    angle = fields.angle("taper", "CuttingEdgeAngle")
+    if angle is not None:
+        sizes["taper"] = Size(0.5 * angle.value, f"half of {angle.text}")
+    if "diameter" in sizes:
+        sizes["top"] = sizes["diameter"]
+    if "chamfer" in word.lower():
+        _check_cone(fields)
+    else:
+        sizes.pop("flutes", None)  # of a V-bit: the height of the cylinder above its cone
+
+
+def _fit_tapered_ball(fields: Fields, kind: str, notes: list[str]) -> None:
+    """A ball at the tip; ``TaperAngle`` is between both sides, of a plain ball from the axis."""
+    sizes = fields.sizes
+    angle = fields.angle("taper", "TaperAngle")
+    if angle is not None and kind == "taper":
+        sizes["taper"] = Size(0.5 * angle.value, f"half of {angle.text}")
+    elif angle is not None:
+        notes.append(f"ball with {angle.text} taken as a tapered ball with this half angle")
+    fields.length("top", "TaperDiameter")
+    if "diameter" in sizes:
+        sizes["corner"] = Size(0.5 * sizes["diameter"].value, f"half of {sizes['diameter'].text}")
 
 
 def _check_cone(fields: Fields) -> None:
