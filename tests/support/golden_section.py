@@ -22,7 +22,7 @@ _BEYOND = 1e6
 
 def underside(tool: ToolShape, rho: FloatArray) -> FloatArray:
     """Height above the tip at a distance from the axis; a steep cone beyond the radius keeps it convex."""
-    off = np.clip(rho - tool.disc_mm, 0.0, tool.corner_radius_mm)
+    off = np.minimum(np.maximum(rho - tool.disc_mm, 0.0), tool.corner_radius_mm)
     height = tool.corner_radius_mm - np.sqrt(tool.corner_radius_mm**2 - off**2)
     if tool.taper_rad > 0.0:
         wall = tool.arc_height_mm + (rho - tool.arc_radius_mm) / math.tan(tool.taper_rad)
@@ -33,20 +33,22 @@ def underside(tool: ToolShape, rho: FloatArray) -> FloatArray:
 
 
 def dropped(triangles: FloatArray, tool: ToolShape, points: FloatArray, floor: float) -> FloatArray:
-    """Tip heights over points, shape (m, 2), by triangles, shape (n, 3, 3)."""
-    p = triangles[:, None, :, :]
-    x, y = points[None, :, 0], points[None, :, 1]
-
-    def value(u: FloatArray, v: FloatArray) -> FloatArray:
-        at = [p[..., 0, k] + u * (p[..., 1, k] - p[..., 0, k]) + v * (p[..., 2, k] - p[..., 0, k]) for k in range(3)]
-        return at[2] - underside(tool, np.hypot(at[0] - x, at[1] - y))
-
-    shape = (len(triangles), len(points))
+    """Tip heights over points, shape (..., m, 2), by triangles, shape (..., n, 3, 3)."""
+    corner = np.moveaxis(triangles, (-2, -1), (0, 1))[..., None]
+    begin, along, across = corner[0], corner[1] - corner[0], corner[2] - corner[0]
+    at = np.moveaxis(points, -1, 0)[..., None, :]
+    begin = np.stack(np.broadcast_arrays(begin[0] - at[0], begin[1] - at[1], begin[2]))
+    shape = begin.shape[1:]
 
     def over_v(u: FloatArray) -> FloatArray:
-        return largest(lambda v: value(u, v), np.zeros(shape), 1.0 - u)
+        x, y, z = begin + u * along
 
-    best = largest(over_v, np.zeros(shape), np.ones(shape)).max(axis=0)
+        def value(v: FloatArray) -> FloatArray:
+            return z + v * across[2] - underside(tool, np.hypot(x + v * across[0], y + v * across[1]))
+
+        return largest(value, np.zeros(shape), 1.0 - u)
+
+    best = largest(over_v, np.zeros(shape), np.ones(shape)).max(axis=-2)
     return np.maximum(best, floor)
 
 
