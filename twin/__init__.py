@@ -60,6 +60,7 @@ if TYPE_CHECKING:
         ToolSummary,
         WorkpiecePatch,
     )
+    from twin.report.page import write_run_report
     from twin.run.run import Run
     from twin.tool_library import LibraryTool, ToolCylinder, ToolLibrary, read_tool_library
     from twin.verification.settings import VerifySettings
@@ -141,6 +142,7 @@ __all__ = [
     "write_mesh",
     "write_paths",
     "write_report",
+    "write_run_report",
 ]
 
 #: Modules of the public names.
@@ -169,6 +171,7 @@ _HOMES = {
         *("Attachment", "Collision", "Engagement", "ForceSamples", "NcEvent", "Record", "RunHeader", "RunSummary"),
         *("Step", "ToolRecord", "ToolSummary", "WorkpiecePatch"),
     ),
+    "twin.report.page": ("write_run_report",),
     "twin.run.run": ("Run",),
     "twin.tool_library": ("LibraryTool", "ToolCylinder", "ToolLibrary", "read_tool_library"),
     "twin.verification.settings": ("VerifySettings",),

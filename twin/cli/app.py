@@ -19,6 +19,7 @@ COMMANDS: Mapping[str, str] = {
     "them.",
     "view": "Show an archived run, or an archived comparison, in the rerun viewer.",
     "info": "Print the contents of an archive: summary of the run, program, stock, tools, messages, attached files.",
+    "report": "Write a page about a run: summary, forces by tool and line, worst positions, collisions, warnings.",
     "export": "Write every force sample of a run as CSV or Parquet.",
     "compare": "Compare a measured force log with a run: errors, harmonics, report.",
     "materials": "List cutting coefficients of materials with their sources, or print one of them.",

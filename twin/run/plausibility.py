@@ -24,6 +24,16 @@ _UNITS = re.compile(r"G0*2[01](?![\d.])", re.IGNORECASE)
 _TOOL_KEY = re.compile(r"tools\[(\d+)\]\.(number|diameter_mm|teeth)")
 
 
+def tool_sizes(header: RunHeader) -> dict[int, tuple[float, int]]:
+    """Diameter, mm, and number of teeth of the run's tools, by tool number."""
+    found: dict[str, dict[str, float]] = {}
+    for key, value in header.parameters.items():
+        match = _TOOL_KEY.fullmatch(key)
+        if match:
+            found.setdefault(match[1], {})[match[2]] = float(value)
+    return {int(t["number"]): (t["diameter_mm"], int(t["teeth"])) for t in found.values()}
+
+
 @dataclass(slots=True)
 class _Doubt:
     """One kind of doubt about one tool: the line where it is worst, its text there, and on how many lines it is."""
@@ -63,12 +73,7 @@ class Plausibility:
         self._parameters = header.parameters
         low, high = header.stock_bounds_mm
         self._stock_mm = float(max(high[0] - low[0], high[1] - low[1]))
-        found: dict[str, dict[str, float]] = {}
-        for key, value in header.parameters.items():
-            match = _TOOL_KEY.fullmatch(key)
-            if match:
-                found.setdefault(match[1], {})[match[2]] = float(value)
-        self._tools = {int(t["number"]): (t["diameter_mm"], int(t["teeth"])) for t in found.values()}
+        self._tools = tool_sizes(header)
 
     def _step(self, step: Step) -> None:
         if step.rapid or step.feed_mm_min == 0.0:

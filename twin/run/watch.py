@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from twin.number_format import plural
@@ -14,6 +14,13 @@ from twin.run.plausibility import Plausibility
 MOST_COLLISIONS = 1000
 _MOST_NOTICES = 5
 _TOOL_CAUTION = re.compile(r"tools\[\d+\]\.caution")
+#: What each kind of collision is.
+COLLISION_TEXTS: Mapping[CollisionKind, str] = {
+    "rapid": "rapid through the stock",
+    "shank": "shank touches the stock",
+    "holder": "holder touches the stock",
+    "spindle-stopped": "feed with the spindle stopped",
+}
 
 
 @dataclass(slots=True, kw_only=True)

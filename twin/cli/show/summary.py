@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from twin.number_format import clock, column, digits, plural, volume
+from twin.run.watch import COLLISION_TEXTS
 
 if TYPE_CHECKING:
     from twin.record import RunHeader, RunSummary, ToolSummary
@@ -19,12 +20,6 @@ if TYPE_CHECKING:
 
 _MOST_GROUPS = 10
 _LONGEST_BLOCK = 76
-_KINDS = {
-    "rapid": "rapid through the stock",
-    "shank": "shank touches the stock",
-    "holder": "holder touches the stock",
-    "spindle-stopped": "feed with the spindle stopped",
-}
 _Four = tuple[float, float, float, float]
 
 
@@ -171,7 +166,9 @@ def _collisions(groups: Sequence[CollisionGroup]) -> Table:
     volumes = column(g.volume_mm3 for g in shown)
     for g, volume_of in zip(shown, volumes, strict=True):
         position = (f"{x:.3f}" for x in g.point_mm)
-        made.add_row(str(g.nc_line), f"T{g.tool}", _KINDS[g.kind], str(g.count), volume_of, clock(g.t_s), *position)
+        made.add_row(
+            str(g.nc_line), f"T{g.tool}", COLLISION_TEXTS[g.kind], str(g.count), volume_of, clock(g.t_s), *position
+        )
     if len(groups) > _MOST_GROUPS:
         made.add_row("", "", f"and on {plural(len(groups) - _MOST_GROUPS, 'further line')}")
     return made
