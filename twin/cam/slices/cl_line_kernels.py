@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.geometry.sorting_kernels import order_of
 from twin.jit import helper, njit
 
 #: Nodes of the table that finds where a bull-nose tool touches a slope.
@@ -175,8 +176,11 @@ def _ring_pieces(ring: FloatArray, segments: FloatArray, corners: FloatArray) ->
 @helper
 def _sort_rows(rows: FloatArray) -> None:
     """Put rows in the order of their first number."""
-    order = np.argsort(rows[:, 0], kind="mergesort")
-    rows[:] = rows.copy()[order]
+    before = rows.copy()
+    order = order_of(before[:, 0])
+    for i in range(len(rows)):
+        for column in range(rows.shape[1]):
+            rows[i, column] = before[order[i], column]
 
 
 @helper

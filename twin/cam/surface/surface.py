@@ -73,8 +73,9 @@ def surface_of_mesh(vertices_mm: FloatArray, triangles: NDArray[np.int64], *, th
         vertices_mm: shape (n, 3), finite, each used by a triangle.
         triangles: shape (m, 3).
     """
-    vertices = np.ascontiguousarray(vertices_mm, dtype=np.float64)
-    faces = np.ascontiguousarray(triangles, dtype=np.int64)
+    # copies, since kernels compile again for arrays that may not be written
+    vertices = np.array(vertices_mm, dtype=np.float64, order="C")
+    faces = np.array(triangles, dtype=np.int64, order="C")
     normals = np.empty((len(faces), 3))
     kernels.face_slopes(vertices, faces, normals)
     mesh = kernels.Mesh(vertices, faces)

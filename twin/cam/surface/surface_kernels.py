@@ -15,14 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.jit import helper, inlined, njit
+from twin.geometry.sorting_kernels import sort_by
+from twin.jit import inlined, njit
 
 #: Cones thinner than this have no part of their own: neighbours touch there, up to R times this.
 _THIN_RAD = 1e-10
 #: Cones are widened by this against rounding; more elements are tested, never a wrong height found.
 _WIDEN_RAD = 1e-9
-#: Up to this many numbers are sorted by insertion.
-_FEW = 64
 #: Steepest direction of a vertex cone, as a slope; what lies beyond is taken as level.
 _STEEPEST = 1e6
 
@@ -76,28 +75,13 @@ def edge_sides(triangles: NDArray[np.int64], vertices: int, sides: Groups) -> in
     edges = 0
     for v in range(vertices):
         first, last = starts[v], starts[v + 1]
-        _sort_by(order[first:last], high)
+        sort_by(order[first:last], high)
         for i in range(first, last):
             if i == first or high[order[i]] != high[order[i - 1]]:
                 begins[edges] = i
                 edges += 1
     begins[edges] = starts[vertices]
     return edges
-
-
-@helper
-def _sort_by(order: NDArray[np.int64], keys: NDArray[np.int64]) -> None:
-    """Sort numbers by their keys, those of equal keys as they were; most often they are few."""
-    if len(order) > _FEW:
-        part = order.copy()
-        order[:] = part[np.argsort(keys[part], kind="mergesort")]
-        return
-    for i in range(1, len(order)):
-        number, k = order[i], i
-        while k > 0 and keys[order[k - 1]] > keys[number]:
-            order[k] = order[k - 1]
-            k -= 1
-        order[k] = number
 
 
 @njit
@@ -226,8 +210,10 @@ def vertex_cones(
             if count == 0:
                 break
         if count > 0:
-            cones[v, 0], cones[v, 1] = px[:count].min(), px[:count].max()
-            cones[v, 2], cones[v, 3] = py[:count].min(), py[:count].max()
+            cones[v, 0], cones[v, 1], cones[v, 2], cones[v, 3] = px[0], px[0], py[0], py[0]
+            for i in range(1, count):
+                cones[v, 0], cones[v, 1] = min(cones[v, 0], px[i]), max(cones[v, 1], px[i])
+                cones[v, 2], cones[v, 3] = min(cones[v, 2], py[i]), max(cones[v, 3], py[i])
 
 
 @inlined

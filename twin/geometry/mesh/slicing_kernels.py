@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.geometry.sorting_kernels import order_of
 from twin.jit import helper, njit
 
 
@@ -347,7 +348,7 @@ def _any_touch(whole: NDArray[np.int64], rings: NDArray[np.int64]) -> bool:
             tail[n], tip[n] = i, j
             low[n] = min(whole[i, 0], whole[j, 0])
             n += 1
-    order = np.argsort(low)
+    order = order_of(low)
     active = np.empty(count, dtype=np.int64)
     held = 0
     for e in order:
