@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import sqlite3
 import zipfile
+from contextlib import closing
 from typing import Any
 
 
@@ -103,3 +105,44 @@ CAMOTICS = json.dumps(
 LINUXCNC = (
     "; tools of the mill\nT1 P1 D6.0 Z-12.3 ;6 mm ball end mill\n\nT2 P2 Z40.5 D10 ; face\nT7 P7 D8.5 ;8.5 drill\n"
 )
+
+
+def vectric_database() -> bytes:
+    """A database of Vectric: an inch end mill numbered 7, a ball, a V-bit with a flat tip, a tapered ball."""
+    with closing(sqlite3.connect(":memory:")) as base:
+        base.executescript(
+            "CREATE TABLE tool_geometry (id TEXT, name_format TEXT, tool_type INTEGER, units INTEGER, diameter REAL,"
+            " included_angle REAL, flat_diameter REAL, num_flutes INTEGER, flute_length REAL, tip_radius REAL);"
+            "CREATE TABLE tool_cutting_data (id TEXT, tool_number INTEGER);"
+            "CREATE TABLE tool_entity (id TEXT, tool_geometry_id TEXT, tool_cutting_data_id TEXT);"
+            "CREATE TABLE tool_tree_entry (id TEXT, tool_geometry_id TEXT, name TEXT);"
+            "INSERT INTO tool_geometry VALUES ('a', 'pattern', 1, 1, 0.125, NULL, NULL, 2, 0.5, NULL),"
+            " ('b', '4 mm ball', 0, 0, 4, NULL, NULL, 2, 12, NULL), ('c', '60 deg', 3, 0, 10, 60, 0.2, 2, 8, NULL),"
+            " ('d', 'tapered', 5, 0, 6, 10, NULL, 2, 20, 0.5);"
+            "INSERT INTO tool_cutting_data VALUES ('x', 7), ('y', NULL);"
+            "INSERT INTO tool_entity VALUES ('1', 'a', 'x'), ('2', 'a', 'y');"
+            "INSERT INTO tool_tree_entry VALUES ('1', 'a', '1/8 end mill');"
+        )
+        return bytes(base.serialize())
+
+
+def din_tool(**values: str) -> str:
+    """A tool by DIN 4000-82 as manufacturers export it, with a decimal comma; values by code."""
+    codes = {"NSM": "DIN4000-82", "BLD": "2", "J22": "Fräser", "J21": "12345", "A1": "5", "A5": "4,6", "B2": "13"}
+    codes |= {"B3": "21", "B5": "57", "C3": "6", "F21": "2", "F3": "R", "F4": "40", **values}
+    item = "<Property-Data><PropertyName source='din_mk'>{}</PropertyName><Value>{}</Value></Property-Data>"
+    return f"<Tool><Properties>{''.join(item.format(*pair) for pair in codes.items())}</Properties></Tool>"
+
+
+def din_tools(*tools: str) -> bytes:
+    """The XML file of some tools."""
+    return f"<?xml version='1.0' encoding='utf-8'?>\n<Tool-Data>{''.join(tools)}</Tool-Data>".encode()
+
+
+CREO = b"""<?xml version="1.0" encoding="UTF-8"?>
+<ToolLibrary><Tools><Tool Units="Millimeter">
+<Basic><ID>T0002</ID><Pocket>2</Pocket><Teeth>3</Teeth><Type>Milling</Type></Basic>
+<Cutter FluteLength="22.0"><Apt ID="Cutter1" Type="APT 7"><Diameter>12.0</Diameter><Radius>1.0</Radius>
+<ECorner>5.0</ECorner><FCorner>1.0</FCorner><Alpha>0.0</Alpha><Beta>0.0</Beta><Length>70.0</Length></Apt></Cutter>
+</Tool></Tools></ToolLibrary>
+"""

@@ -23,7 +23,7 @@ COMMANDS: Mapping[str, str] = {
     "export": "Write every force sample of a run as CSV or Parquet.",
     "compare": "Compare a measured force log with a run: errors, harmonics, report.",
     "materials": "List cutting coefficients of materials with their sources, or print one of them.",
-    "tools": "List, check and convert tool libraries: Fusion 360, FreeCAD, LinuxCNC, CAMotics, CSV.",
+    "tools": "List, check and convert tool libraries: Fusion 360, FreeCAD, LinuxCNC, Vectric, CAMotics, DIN 4000, CSV.",
     "identify": "Find cutting coefficients from test cuts, with their errors.",
     "mesh": "Write the machined part as a triangle mesh.",
     "reach": "Find the material that tools cannot reach on a part: position, volume, thickness.",

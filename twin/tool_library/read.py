@@ -17,18 +17,20 @@ from twin.tool_library.formats.camotics import is_table, table_tools
 from twin.tool_library.formats.fusion import fusion_tools
 from twin.tool_library.formats.linuxcnc import is_tool_table, tool_table
 from twin.tool_library.formats.plain_csv import csv_tools
+from twin.tool_library.formats.vectric import vectric_tools
+from twin.tool_library.formats.xml_tools import xml_tools
 from twin.tool_library.library import ToolLibrary
 from twin.tool_library.library_tool import LibraryTool
 from twin.tool_library.quantities import LibraryUnit
 from twin.tool_library.raw_tool import RawTool
 
-_ZIP = b"PK\x03\x04"
+_ZIP, _SQLITE = b"PK\x03\x04", b"SQLite format 3\0"
 #: The heading of a table, where a list of JSON has no word.
 _TOML = re.compile(r"\[\[?[A-Za-z_][\w.-]*\]")
 
 
 def read_tool_library(path: str | PathLike[str], unit: LibraryUnit = "mm") -> ToolLibrary:
-    """Read the tools of a library: Fusion 360, FreeCAD, LinuxCNC, CAMotics, or CSV.
+    """Read the tools of a library: Fusion 360, FreeCAD, LinuxCNC, CAMotics, Vectric, DIN 4000, Creo, or CSV.
 
     Args:
         path: the file.
@@ -59,9 +61,14 @@ def _read(data: bytes, path: Path, unit: LibraryUnit) -> tuple[str, list[Library
     """Format and tools of a file."""
     if data.startswith(_ZIP):
         return _json_tools(json_of(unpacked(data, path), path), path)
+    if data.startswith(_SQLITE):
+        return "Vectric", _assembled(vectric_tools(data, path))
     start = text_of(data[:400], path, legacy=True).lstrip("\ufeff \t\r\n")
     if start[:1] in ("{", "[") and not _TOML.match(start):
         return _json_tools(json_of(data, path), path)
+    if start.startswith("<"):
+        form, raw = xml_tools(data, path)
+        return form, _assembled(raw)
     text = text_of(data, path, legacy=True)
     if is_tool_table(text):
         return "LinuxCNC", _assembled(tool_table(text, path, unit))

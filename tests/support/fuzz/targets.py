@@ -251,7 +251,8 @@ def _libraries() -> list[bytes]:
         "T;Type;Diameter;Corner radius;Z;Flute length;Shank\n4;Bull;12,5;1,5;4;26;12x5",
     )
     bits = (made.freecad_bit(), made.freecad_library("bit.fctb", "gone.fctb"), made.FREECAD_HOLDER, made.CAMOTICS)
-    return [fusion, made.zipped(fusion), *bits, *(text.encode() for text in rows)]
+    others = (made.vectric_database(), made.din_tools(made.din_tool(), made.din_tool(BLD="6", F3="L")), made.CREO)
+    return [fusion, made.zipped(fusion), *bits, *(text.encode() for text in rows), *others]
 
 
 def _library_neighbours() -> Neighbours:
@@ -261,7 +262,7 @@ def _library_neighbours() -> Neighbours:
 
 
 def _mutated_library(source: random.Random, data: bytes) -> bytes:
-    return binary_mutated(source, data) if data.startswith(b"PK") else text_mutated(source, data, LIBRARY)
+    return binary_mutated(source, data) if data.startswith((b"PK", b"SQLite")) else text_mutated(source, data, LIBRARY)
 
 
 def _read_library(path: Path) -> object:

@@ -33,7 +33,7 @@ def tools(
     force: Force = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object in place of the table.")] = False,
 ) -> None:
-    """List, check and convert tool libraries: Fusion 360, FreeCAD, LinuxCNC, CAMotics, CSV.
+    """List, check and convert tool libraries: Fusion 360, FreeCAD, LinuxCNC, Vectric, CAMotics, DIN 4000, CSV.
 
     A job uses a tool with ``from = "FILE"`` and its number or name in [[tools]]. Ends with exit code 1 if a library has
     values that cannot be right; these are named and left out.

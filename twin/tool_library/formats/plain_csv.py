@@ -78,7 +78,7 @@ def _headings(lines: Sequence[str], path: Path) -> tuple[int, str, list[Column |
     if best is None or not any(column and column.name == "diameter" for column in best[3]):
         raise ToolLibraryError(
             f"{path}: is not a tool library: no row of headings with a diameter; expected a library of Fusion 360, "
-            f"FreeCAD, LinuxCNC or CAMotics, or CSV with {', '.join(COLUMNS[:5])} ..."
+            f"FreeCAD, LinuxCNC, CAMotics, Vectric, DIN 4000 or Creo, or CSV with {', '.join(COLUMNS[:5])} ..."
         )
     return best[1], best[2], best[3]
 
