@@ -7,7 +7,7 @@ from array import array
 from math import nan
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from mcap.records import Channel
@@ -18,9 +18,12 @@ from twin.archive.foreign_message import MessageFields
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 
+#: Messages were recorded in bursts where their usual step is shorter than this, ns, and that part of the mean step.
+_BURST_NS, _BURST_PART = 10_000, 0.1
 _ENCODINGS = ("protobuf", "json")
+_Times: TypeAlias = np.ndarray[tuple[int], np.dtype[np.int64]]
 #: Fields that are times by their names.
-_TIME_FIELDS = frozenset(("t_s", "time", "t", "time_s", "t_ms", "time_ms", "t_us", "time_us", "timestamp", "stamp"))
+_TIME_FIELDS = frozenset(("t_s", "time", "t", "time_s", "t_ms", "time_ms", "t_us", "time_us", "timestamp"))
 
 
 def is_run(path: str | PathLike[str]) -> bool:
@@ -117,15 +120,34 @@ class _Rows:
             columns[name] = np.array(column)[order]
         return columns, notes
 
-    def _clock(self) -> tuple[np.ndarray[tuple[int], np.dtype[np.int64]], tuple[str, ...]]:
+    def _clock(self) -> tuple[_Times, tuple[str, ...]]:
         """Times of the messages: their own stamps, or when they were recorded; when they were sent, if in bursts."""
         count = len(self.times_ns)
         if len(self.stamps_ns) == count and self.stamps_ns.count(0) <= 1 and min(self.stamps_ns) < max(self.stamps_ns):
             return np.array(self.stamps_ns), ("time from the stamps in the messages",)
         recorded, sent = np.array(self.times_ns), np.array(self.sent_ns)
-        if np.any(np.diff(np.sort(recorded)) == 0) and np.all(np.diff(np.sort(sent)) > 0):
+        steps, sent_steps = np.diff(np.sort(recorded)), np.diff(np.sort(sent))
+        if not np.any(steps == 0) and not _in_bursts(steps):
+            return recorded, ()
+        if np.all(sent_steps > 0) and not _in_bursts(sent_steps):
             return sent, ("time at which the messages were sent: they were recorded in bursts",)
-        return recorded, ()
+        return (_begins(recorded), ("recorded in bursts",)) if _in_bursts(steps) else (recorded, ())
+
+
+def _in_bursts(steps_ns: _Times) -> bool:
+    """Whether messages come in bursts with pauses between: faster than forces are sampled, and than in the mean."""
+    usual = float(np.median(steps_ns)) if len(steps_ns) else 0.0
+    return 0.0 < usual < min(_BURST_NS, _BURST_PART * float(steps_ns.mean()))
+
+
+def _begins(times_ns: _Times) -> _Times:
+    """Times of messages that were recorded in bursts: the begin of its burst for each."""
+    order = np.argsort(times_ns, kind="stable")
+    sorted_ns = times_ns[order]
+    first = np.concatenate(([True], np.diff(sorted_ns) >= _BURST_NS))
+    made = np.empty_like(times_ns)
+    made[order] = sorted_ns[np.maximum.accumulate(np.where(first, np.arange(len(first)), 0))]
+    return made
 
 
 def _choose(path: Path, channels: list[Channel], topic: str | None) -> str:

@@ -17,6 +17,8 @@ _MOST_ELEMENTS = 64
 _MOST_LEVELS = 32
 _SECONDS = ("sec", "secs", "seconds")
 _NANOSECONDS = ("nsec", "nanosec", "nsecs", "nanos", "nanoseconds")
+#: Moments of logs, s since 1970: the years 2000 to 2100.
+_EPOCH_S = (9.46e8, 4.1e9)
 _TIMESTAMP = "google.protobuf.Timestamp"
 
 
@@ -71,8 +73,8 @@ class MessageFields:
                 for index, inner in enumerate(value, 1):
                     self._take_json(inner, f"{name}[{index}]", level + 1)
         elif isinstance(value, int | float) and not isinstance(value, bool):
-            self.numbers[name] = float(value)
-        elif isinstance(value, str) and name.rpartition(".")[2].lower() in ("stamp", "timestamp", "time"):
+            self._take_number(value, name)
+        elif isinstance(value, str) and _last(name) in ("stamp", "timestamp", "time"):
             self._stamped(_moment_ns(value))
 
     def _take_message(self, message: Any, prefix: str) -> None:
@@ -90,7 +92,7 @@ class MessageFields:
 
     def _take_part(self, value: Any, name: str, *, nested: bool) -> None:
         if not nested:
-            self.numbers[name] = float(value)
+            self._take_number(value, name)
             return
         fields = {part.name: getattr(value, part.name) for part in value.DESCRIPTOR.fields}
         stamp = _stamp(fields)
@@ -98,6 +100,13 @@ class MessageFields:
             self._stamped(stamp)
         else:
             self._take_message(value, f"{name}.")
+
+    def _take_number(self, value: float, name: str) -> None:
+        stamp = _moment_of(value) if _last(name) == "stamp" else None
+        if stamp is None:
+            self.numbers[name] = float(value)
+        else:
+            self._stamped(stamp)
 
     def _fits(self, values: Sequence[Any], name: str) -> bool:
         if len(values) <= _MOST_ELEMENTS:
@@ -119,6 +128,19 @@ def _stamp(fields: Mapping[str, Any]) -> int | None:
     if not isinstance(seconds, int) or not isinstance(rest, int) or not abs(seconds) < 1 << 33:
         return None
     return seconds * 1_000_000_000 + rest
+
+
+def _last(name: str) -> str:
+    return name.rpartition(".")[2].lower()
+
+
+def _moment_of(value: float) -> int | None:
+    """Nanoseconds of a number named as a stamp: ms, us or ns since 1970 by its size, or seconds with decimals."""
+    for size in (1_000_000, 1000, 1):
+        if _EPOCH_S[0] < value * size * 1e-9 < _EPOCH_S[1]:
+            return value * size if isinstance(value, int) else round(value * size)
+    seconds = isinstance(value, float) and 0.0 <= value < _EPOCH_S[1]
+    return round(value * 1e9) if seconds else None
 
 
 def _moment_ns(text: str) -> int | None:

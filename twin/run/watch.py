@@ -13,6 +13,7 @@ from twin.run.plausibility import Plausibility
 #: More collisions than this are counted and not kept.
 MOST_COLLISIONS = 1000
 _MOST_NOTICES = 5
+_STOCK_NOTE = re.compile(r"stock\.note\[\d+\]")
 _TOOL_CAUTION = re.compile(r"tools\[\d+\]\.caution")
 #: What each kind of collision is.
 COLLISION_TEXTS: Mapping[CollisionKind, str] = {
@@ -102,7 +103,7 @@ class Watch:
 
     def warnings(self, summary: RunSummary) -> list[str]:
         """Warnings for the user, one line each."""
-        remarks = (*self._on_coefficients(), *self._on_tools(), *self._without_effect())
+        remarks = (*self._on_stock(), *self._on_coefficients(), *self._on_tools(), *self._without_effect())
         return [*self._collided(summary), *self.doubts(summary), *remarks]
 
     def doubts(self, summary: RunSummary) -> list[str]:
@@ -147,6 +148,11 @@ class Watch:
                 f"no material was cut: {path}, the stock is at {stock}; "
                 "check stock, machine.offsets and the tools' length_mm in the job"
             )
+
+    def _on_stock(self) -> Iterator[str]:
+        """What was assumed or mended in the file of the stock."""
+        parameters = self.header.parameters if self.header is not None else {}
+        yield from (text for key, text in parameters.items() if _STOCK_NOTE.fullmatch(key))
 
     def _on_coefficients(self) -> Iterator[str]:
         """Coefficients without a source, and the cautions that come with others."""

@@ -19,11 +19,18 @@ from twin.workpiece.trislice import TriSlices
 _LIBRARIES = ("numpy", "numba", "pyclipper", "trimesh")
 
 
-def run_header(job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], planned_time_s: float) -> RunHeader:
-    """Describe a run: stock, tools, settings with their defaults, versions, and the files it was made from."""
+def run_header(
+    job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], planned_time_s: float, stock_notes: Sequence[str] = ()
+) -> RunHeader:
+    """Describe a run: stock, tools, settings with their defaults, versions, and the files it was made from.
+
+    Args:
+        stock_notes: what was assumed or mended in the file of the stock.
+    """
     parameters = dict(_flat(job.model_dump(mode="json", exclude={"text", "path"}, by_alias=True)))
     parameters |= {f"version.{name}": version(name) for name in _LIBRARIES}
     parameters |= {"version.python": platform.python_version(), "version.twin": __version__}
+    parameters |= {f"stock.note[{index}]": note for index, note in enumerate(stock_notes)}
     x, y, z = workpiece.pitch_mm
     return RunHeader(
         twin_version=__version__,

@@ -89,7 +89,7 @@ def prepare(job: Job, *, threads: int | None = None, preview: bool = True) -> Se
     frame_s = planned_time_s / FRAMES or math.inf
     return Setup(
         program=str(job.program.file),
-        header=run_header(job, workpiece, [t.record for t in tools.values()], planned_time_s),
+        header=run_header(job, workpiece, [t.record for t in tools.values()], planned_time_s, slices.notes),
         moves=moves,
         tools=tools,
         material=Material(workpiece, tolerance, threads),

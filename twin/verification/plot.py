@@ -61,7 +61,7 @@ def _spread(axes: Axes, found: Deviation, end: float) -> None:
     bins = np.linspace(-end, end, 121)
     inside = np.clip(found.deviation_mm * _UM, -end, end)
     share = 100.0 * found.area_mm2 / max(float(found.area_mm2.sum()), 1e-300)
-    axes.hist(inside, bins=bins.tolist(), weights=share, color="#4a7db5", log=True)
+    axes.hist(inside, bins=bins.tolist(), weights=share, color="#4a7db5", log=bool(share.any()))
     for at in (-found.tolerance_mm * _UM, found.excess_mm * _UM):
         axes.axvline(at, color="#b2182b", linewidth=1.0, linestyle="--")
     axes.set(xlabel="deviation, µm (outer bins: beyond)", ylabel="share of the machined area, %")

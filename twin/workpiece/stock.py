@@ -30,12 +30,14 @@ class SliceSet:
         low_mm, high_mm: corners of the stock's box, shape (3,).
         pitch_mm: distance of the planes along x, y, z, shape (3,).
         regions: one tuple an axis, one region a plane.
+        notes: what was assumed or mended in the file of the stock.
     """
 
     low_mm: FloatArray
     high_mm: FloatArray
     pitch_mm: FloatArray
     regions: tuple[tuple[Region, ...], ...]
+    notes: tuple[str, ...] = ()
 
     def positions_mm(self, axis: int) -> FloatArray:
         """Positions of a family's planes along its axis, increasing."""

@@ -177,6 +177,26 @@ def test_objects_are_refused_by_class(version: int, class_name: str, how: str, t
         read_log(path)
 
 
+@pytest.mark.parametrize("form", ["4", "5", "7.3"])
+def test_complex_forces_are_refused_unless_they_are_real(form: str, tmp_path: Path) -> None:
+    from scipy.io import savemat
+
+    path = tmp_path / "a.mat"
+    for imaginary in (0.0, 2.0):
+        if form == "7.3":
+            x = np.zeros((1, len(X)), [("real", "f8"), ("imag", "f8")])
+            x["real"], x["imag"] = X, imaginary
+            columns = {"Fx": x, "t": T[None], "Fy": Y[None], "Fz": Z[None]}
+            write73(path, lambda file, of=columns: [put(file, k, v, "double") for k, v in of.items()])
+        else:
+            savemat(path, {"t": T, "Fx": X + imaginary * 1j, "Fy": Y, "Fz": Z}, format=form)
+        if imaginary:
+            with pytest.raises(MeasuredError, match=r"not read: Fx \(a MATLAB complex array, .*Fx = real\(Fx\)"):
+                read_forces(path)
+        else:
+            np.testing.assert_allclose(read_forces(path).force_n, forces())
+
+
 def test_references_in_a_ring_are_an_error(tmp_path: Path) -> None:
     def fill(file: Any) -> None:
         import h5py

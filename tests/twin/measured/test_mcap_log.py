@@ -188,3 +188,32 @@ def test_stamps_and_lists_of_protobuf(tmp_path: Path) -> None:
     log = read_forces(tmp_path / "a.mcap")
     assert log.rate_hz == pytest.approx(1000.0)
     np.testing.assert_allclose(log.force_n, [list(force(k).values()) for k in range(N)])
+
+
+@pytest.mark.parametrize("unit", [1.0, 1_000_000, 1000, 1])
+def test_stamps_that_are_one_number(unit: float, tmp_path: Path) -> None:
+    """Whole ms, us and ns since 1970, or seconds with decimals; messages recorded late."""
+
+    def stamped(k: int) -> dict[str, Any]:
+        at = float(BEGIN + k / 1000) if unit == 1.0 else (BEGIN * 10**9 + k * STEP) // int(unit)
+        return {"header": {"stamp": at}, **plain(k)}
+
+    log = read_forces(write(tmp_path / "a.mcap", stamped, log_ns=lambda k: BEGIN * 10**9 + (k // 10) * 10**7))
+    assert log.rate_hz == pytest.approx(1000.0, rel=1e-6) and "time from the stamps in the messages" in log.notes
+
+
+def test_a_whole_number_since_the_start_of_a_machine_is_not_a_moment(tmp_path: Path) -> None:
+    log = read_forces(write(tmp_path / "a.mcap", lambda k: {"stamp": 5_000_000_000 + k * STEP, **plain(k)}))
+    assert log.rate_hz == pytest.approx(1000.0) and "from the time column" in " ".join(log.notes)
+
+
+def test_messages_recorded_in_bursts_without_times_of_their_own(tmp_path: Path) -> None:
+    """Ten messages each 10 ms, a few microseconds apart."""
+
+    def late(k: int) -> int:
+        return BEGIN * 10**9 + (k // 10 + 1) * 10_000_000 + k % 10 * 3000
+
+    log = read_forces(write(tmp_path / "a.mcap", plain, log_ns=late, sent_ns=late))
+    assert log.rate_hz == pytest.approx(1000.0) and log.gaps == ()
+    assert "recorded in bursts" in log.notes
+    np.testing.assert_allclose(log.force_n[:, 0], 1200.0 + np.arange(N))

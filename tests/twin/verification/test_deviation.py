@@ -1,6 +1,9 @@
 from __future__ import annotations
 
 import math
+import warnings
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,10 +12,12 @@ import trimesh
 from support.small_parts import box, prism, prism_corners
 
 from twin.verification.deviation import Deviation, Limits, deviation
+from twin.verification.plot import plot_deviation
 from twin.verification.rays import beyond, cast
 from twin.workpiece.solids.from_mesh import Solid, mesh_slices, solid
 from twin.workpiece.trislice import CellSlices
 
+NOTHING = np.empty(0)
 #: Rounding of vertices to 1e-5 mm.
 ROUNDING = 2e-5
 
@@ -144,3 +149,12 @@ def test_regions_have_the_area_of_the_machined_surface() -> None:
     narrow = extruded(*(np.array([(-4, -4), (4, -4), (4, 4), (-4, 4)]) * s for s in (1.0, 0.02)))
     regions = compare(box((-4, -4, 0), (4, 4, 5)), narrow, pitch=0.1).regions
     assert len(regions) == 2 and [r.area_mm2 for r in regions] == pytest.approx([0.0256] * 2, rel=0.6)
+
+
+def test_a_picture_without_any_machined_area(tmp_path: Path) -> None:
+    """The stock is the part: nothing was machined, and warnings of the library are errors here."""
+    empty = replace(compare(step(3.0), step(3.0)), points_mm=np.empty((0, 3)), deviation_mm=NOTHING, area_mm2=NOTHING)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        plot_deviation(empty, tmp_path / "map.png")
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")

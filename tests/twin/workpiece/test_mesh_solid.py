@@ -260,6 +260,11 @@ VARIANTS = {
     "decimal commas": lambda text: re.sub(r"(?<=vertex ).*", lambda m: m[0].replace(".", ","), text),
     "commas between numbers": lambda text: re.sub(r"(?<=vertex ).*", lambda m: ", ".join(m[0].split()), text),
     "normals that are no numbers": lambda text: re.sub(r"(?<=normal ).*", "-nan(ind) -1.#IND nan", text),
+    "no normals": lambda text: re.sub(r"facet normal.*", "facet", text),
+    "no normals, no first line, CRLF": lambda text: re.sub(
+        r"facet normal.*", "facet", text[text.index("facet") :]
+    ).replace("\n", "\r\n"),
+    "comments": lambda text: "# by a program\n; in mm\n// 12\n" + text.replace("outer loop", "outer loop # of 3\n#"),
     "colours": lambda text: text.replace("plate", "plate\ncolor 0.5 0.5 0.5"),
     "DOS end of file": lambda text: text.encode() + b"\r\n\x1a",
 }

@@ -13,6 +13,9 @@ from twin.job.load import job_from_dict
 from twin.moldmaking import mold_from_dict
 from twin.planning.part_reach import reach
 from twin.planning.planned_path import plan_paths
+from twin.record import RunSummary
+from twin.run.watch import Watch
+from twin.simulation.replay import Replay
 from twin.simulation.setup import stock_slices
 from twin.workpiece.solids.from_mesh import load_mesh, stl_bytes
 from twin.workpiece.solids.units import UNITS_MM, size_doubts
@@ -92,3 +95,20 @@ def test_jobs_have_the_same_key(files: dict[str, Path]) -> None:
 def test_doubts_about_a_size(length: float, tool: float | None, stock: float | None, doubt: str | None) -> None:
     found = list(size_doubts("a.stl", np.array([[0, 0, 0], [length, 1, 1]]), tool_mm=tool, stock_mm=stock))
     assert found == [] if doubt is None else len(found) == 1 and doubt in found[0]
+
+
+def test_a_run_states_what_was_mended_in_its_stock(tmp_path: Path) -> None:
+    block = box((0, 0, 0), SIZE)
+    corners = block.vertices_mm[block.triangles]
+    corners[0, 0] += 4e-4
+    (tmp_path / "block.stl").write_bytes(stl_bytes(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)))
+    (tmp_path / "p.nc").write_text("G21\nM30\n")
+    tables = {"program": {"file": "p.nc"}, "machine": {"offsets": {"G54": [0.0, 0.0, 0.0]}}}
+    tables |= {"stock": {"stl": "block.stl"}, "simulation": {"slice_pitch_mm": 5.0}}
+    tables["tools"] = [{"number": 1, "kind": "flat", "diameter_mm": 6.0, "teeth": 2, "flute_length_mm": 9.0}]
+    watch = Watch()
+    records = list(Replay(job_from_dict(tables, tmp_path), threads=1))
+    for record in records:
+        watch.take(record)
+    assert isinstance(records[-1], RunSummary)
+    assert "1 vertex on open edges welded" in " ".join(watch.warnings(records[-1]))

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.measured.formats.matlab_values import Cell, Opaque, StructArray, Value
+from twin.measured.formats.matlab_values import COMPLEX, Cell, Opaque, StructArray, Value
 
 _HEADER_BYTES = 128
 _MATRIX, _COMPRESSED = 14, 15
@@ -24,6 +24,8 @@ _TEXT_CODES = {16: "utf-8", 17: "utf-16", 18: "utf-32"}
 #: Classes of arrays: 1 cells, 2 structs, 3 objects of the former kind, 4 characters, 6 to 15 numbers.
 _OBJECT, _OPAQUE = 3, 17
 _OTHER_CLASSES = {5: "sparse matrix", 16: "function handle"}
+#: Flag of an array whose numbers have an imaginary part.
+_IMAGINARY = 0x800
 _NUMERIC = range(6, 16)
 #: Values nested deeper than this are not a log.
 _MOST_LEVELS = 24
@@ -115,13 +117,17 @@ def _matrix(body: memoryview, order: str, level: int) -> tuple[str, Value | None
     parts = _Bytes(body, order)
     flags = _integers(parts, order)
     kind = int(flags[0]) & 0xFF if len(flags) else 0
+    imaginary = bool(len(flags) and int(flags[0]) & _IMAGINARY)
     if kind == _OPAQUE:
         name, _, class_name = (_text(parts) for _ in range(3))
         return name, Opaque(class_name)
     shape = tuple(map(int, _integers(parts, order)))
     if not shape or min(shape) < 0:
         raise DamagedError(f"dimensions {shape}")
-    return _text(parts), _value(parts, order, shape, kind, level)
+    name, value = _text(parts), _value(parts, order, shape, kind, level)
+    if imaginary and kind in _NUMERIC and np.any(_numbers(parts, order, shape)):
+        return name, Opaque(COMPLEX)
+    return name, value
 
 
 def _value(parts: _Bytes, order: str, shape: tuple[int, ...], kind: int, level: int) -> Value:
@@ -223,12 +229,15 @@ def _version4(data: bytes) -> Iterator[tuple[str, Value]]:
         dtype = np.dtype(f"{order}{_V4_DTYPES[kind]}")
         begin = at + _V4_HEAD + length
         size = rows * columns * dtype.itemsize
-        if begin + size > len(data):
-            raise DamagedError(f"a variable claims {size} bytes, {max(len(data) - begin, 0)} are there")
+        end = begin + size * (2 if imaginary else 1)
+        if end > len(data):
+            raise DamagedError(f"a variable claims {end - begin} bytes, {max(len(data) - begin, 0)} are there")
         name = data[at + _V4_HEAD : begin].split(b"\0")[0].decode("latin-1")
-        if layout == 0:
+        if layout == 0 and imaginary and np.any(np.frombuffer(data, dtype, rows * columns, begin + size)):
+            yield name, Opaque(COMPLEX)
+        elif layout == 0:
             values = np.frombuffer(data, dtype, rows * columns, begin)
             yield name, values.astype(np.float64).reshape((rows, columns), order="F")
         elif layout == 2:
             yield name, Opaque("sparse matrix")
-        at = begin + size * (2 if imaginary else 1)
+        at = end

@@ -11,7 +11,7 @@ import numpy as np
 from twin.measured.formats.bounds import check_size
 from twin.measured.formats.hdf5 import attribute_text, unit_of
 from twin.measured.formats.hdf5_chunks import check_chunks
-from twin.measured.formats.matlab_values import Cell, Channel, Opaque, StructArray, Value
+from twin.measured.formats.matlab_values import COMPLEX, Cell, Channel, Opaque, StructArray, Value
 
 #: Values nested deeper than this are not a log; references may form a ring.
 _MOST_LEVELS = 24
@@ -57,6 +57,8 @@ class _Reader:
         if h5py.check_ref_dtype(node.dtype) is not None:
             values = self._referenced(node, level)
             return Cell(tuple(reversed(node.shape)), values)
+        if node.dtype.names == ("real", "imag"):
+            return self._complex(node, class_name)
         if node.dtype.kind not in _NUMERIC:
             return Opaque(class_name or str(node.dtype))
         if class_name not in ("", "char", "logical", "single", "double") and not class_name.lstrip("u").startswith(
@@ -65,13 +67,19 @@ class _Reader:
             return Opaque(class_name)
         return self._array(node, class_name)
 
-    def _array(self, node: Any, class_name: str) -> Value:
+    def _complex(self, node: Any, class_name: str) -> Value:
+        """The real part, where the imaginary one is zero throughout."""
+        real = self._array(node, class_name, "real")
+        return Opaque(COMPLEX) if np.any(node[()]["imag"]) else real
+
+    def _array(self, node: Any, class_name: str, part: str = "") -> Value:
         self._bytes += 8 * int(node.size)
         check_size(self._path, self._bytes, "its variables")
         check_chunks(self._path, node)
         if class_name == "char":
             return "".join(chr(c) for c in np.ravel(node[()]).tolist() if 0 < c < 0xD800)
-        values = np.asarray(node[()], np.float64).T
+        stored = node[()]
+        values = np.asarray(stored[part] if part else stored, np.float64).T
         unit = unit_of(node.attrs)
         return Channel(values, unit) if unit else values
 

@@ -20,8 +20,11 @@ _STARTS = ("t0", "start", "starttime", "start_time", "wf_start_offset")
 _STEPS = ("dt", "delta", "increment", "xinc", "wf_increment")
 #: Largest deviation of a channel's steps from their median, as a part of it, for even times.
 _EVEN = 1e-3
+#: Class name of arrays of complex numbers.
+COMPLEX = "complex array"
 #: How to save what cannot be read.
 _SAVE = {
+    COMPLEX: "{0} = real({0}), or abs({0})",
     "table": "writetable({0}, 'log.csv')",
     "timetable": "writetimetable({0}, 'log.csv')",
     "timeseries": "t = {0}.Time; F = {0}.Data; save('log.mat', 't', 'F')",
@@ -88,9 +91,8 @@ class Columns:
             case Opaque():
                 name = path.rpartition("/")[2]
                 how = _SAVE.get(value.class_name, "save its numbers as arrays").format(name)
-                self.refused.append(
-                    f"{path} (a MATLAB {value.class_name}, which only MATLAB can read; save it by: {how})"
-                )
+                why = "which is not one force" if value.class_name == COMPLEX else "which only MATLAB can read"
+                self.refused.append(f"{path} (a MATLAB {value.class_name}, {why}; save it by: {how})")
 
     def _array(self, path: str, values: FloatArray, unit: str) -> None:
         if values.size == 1:

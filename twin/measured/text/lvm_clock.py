@@ -146,6 +146,11 @@ def _placed(
     if goes_on and (later == 0.0 or agrees):
         return part.x_s
     resolution = max(first.resolution_s, part.resolution_s)
+    if later < 0.0 and part.counted:
+        raise MeasuredError(
+            f"{path}:{part.line}: segment {number} begins {-later:g} s before the first one by its header; "
+            "expected later moments: split the file there"
+        )
     if later <= 0.0:
         if part.counted or (part.stamp and later == 0.0 and last_s + part.step_s < resolution):
             return None

@@ -159,7 +159,7 @@ def mesh_slices(mesh: Solid, pitch_mm: float) -> SliceSet:
         return mesh_sections(mesh.vertices_mm, mesh.triangles, mesh.edges, axes, planes)
 
     families = run_all([partial(cut, axis) for axis in range(3)])
-    return SliceSet(low_mm=low, high_mm=high, pitch_mm=pitch, regions=tuple(families))
+    return SliceSet(low_mm=low, high_mm=high, pitch_mm=pitch, regions=tuple(families), notes=mesh.notes)
 
 
 def stl_bytes(vertices_mm: ArrayLike, triangles: ArrayLike) -> bytes:

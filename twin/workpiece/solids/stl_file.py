@@ -1,7 +1,8 @@
 """STL files: the corners of their triangles, from binary and from text files.
 
 Text files are read by their keywords, whatever the case, the line ends and the spaces between them; a mark of the
-encoding at the start and padding at the end are skipped. Whatever else is in a file is refused with its line.
+encoding at the start, comments and padding at the end are skipped, and normals may be missing. Whatever else is in a
+file is refused with its line.
 """
 
 from __future__ import annotations
@@ -20,15 +21,21 @@ _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribut
 
 _CORNER = r"vertex\s+(\S++)\s+(\S++)\s+(\S++)\s+"
 _FACET = re.compile(
-    rf"facet\s+normal\s+\S++\s+\S++\s+\S++\s+outer\s*loop\s+{3 * _CORNER}end\s*loop\s+end\s*facet\b", re.IGNORECASE
+    rf"facet(?:\s+normal\s+\S++\s+\S++\s+\S++)?\s+outer\s*loop\s+{3 * _CORNER}end\s*loop\s+end\s*facet\b",
+    re.IGNORECASE,
 )
+#: Comments, which the format does not have: a line, or the rest of one after a blank.
+_COMMENT = re.compile(r"(?:^|(?<=[ \t]))(?:#|;|//).*$", re.MULTILINE)
+_BEGIN = re.compile(r"\s*(?:(?:#|;|//)[^\r\n]*\s+)*+(?:solid|facet)\b", re.IGNORECASE)
 #: Lines between facets: the names of solids, and colours, which some CAD systems write.
 _BETWEEN = re.compile(r"(?:(?:solid|end[ \t]*solid|color)\b.*)?", re.IGNORECASE)
-_FACET_BEGINS = re.compile(r"\bfacet\s+normal\b", re.IGNORECASE)
+_FACET_BEGINS = re.compile(r"\bfacet\s+(?:normal|outer)\b", re.IGNORECASE)
 #: A facet that has begun and does not end.
 _CUT_OFF = re.compile(r"^\s*(facet)\b(?!.*\bend\s*facet)", re.IGNORECASE | re.MULTILINE | re.DOTALL)
 #: Marks of the encoding that a text file may begin with.
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
+#: A text file's first keyword lies within this many bytes.
+_OPENING = 4096
 #: Padding after a file's text: NUL, the end-of-file mark of DOS, and blanks.
 _PADDING = "\0\x1a \t\r\n\f\v"
 
@@ -84,14 +91,15 @@ def _text(data: bytes) -> str | None:
         if data.startswith(mark):
             data, encoding = data[len(mark) :], known
             break
-    if encoding == "latin-1" and data[:64].lstrip()[:5].lower() not in (b"solid", b"facet"):
+    if encoding == "latin-1" and not _BEGIN.match(data[:_OPENING].decode(encoding)):
         return None
     text = data.decode(encoding, errors="replace").rstrip(_PADDING)
-    if not re.match(r"\s*(?:solid|facet)\b", text, re.IGNORECASE):
+    if not _BEGIN.match(text):
         return None
     if "\0" in text and not _FACET_BEGINS.search(text):
         return None  # a binary file that was cut off
-    return text.replace("\0", " ").replace("\r\n", "\n").replace("\r", "\n")
+    text = text.replace("\0", " ").replace("\r\n", "\n").replace("\r", "\n")
+    return _COMMENT.sub("", text) if any(mark in text for mark in ("#", ";", "//")) else text
 
 
 def _text_corners(name: str, text: str) -> FloatArray:
