@@ -73,6 +73,9 @@ class ToolOffset:
 class Limits:
     """Limits beyond which a program is refused as a runaway.
 
+    An endless loop takes about 25 us a block, so the defaults refuse one within ten seconds; a macro that mills a field
+    of 500 by 500 points stays below them.
+
     Attributes:
         blocks: blocks executed in all.
         repeated: blocks executed beyond the number of lines of the program and its subprograms, that is again and
@@ -84,9 +87,9 @@ class Limits:
     """
 
     blocks: int = 20_000_000
-    repeated: int = 500_000
+    repeated: int = 300_000
     jumps: int = 1_000_000
-    idle_jumps: int = 100_000
+    idle_jumps: int = 40_000
     nesting: int = 64
     errors: int = 200
 

@@ -173,7 +173,7 @@ class Session:
         """
         self.blocks += blocks
         if self.blocks > self.settings.limits.blocks:
-            self._run_away(line, f"more than {self.settings.limits.blocks} blocks were executed")
+            self._run_away(line, f"more than {self.settings.limits.blocks} blocks were executed", "blocks")
 
     def count_singly(self, line: int, blocks: int) -> None:
         """Counts blocks that are about to be executed one by one.
@@ -188,7 +188,7 @@ class Session:
         most = self.settings.limits.repeated
         self._singly_allowed = most + sum(program.text.count(b"\n") + 1 for program in programs.values())
         if self.singly > self._singly_allowed:
-            self._run_away(line, f"more than {most} blocks were executed again and again")
+            self._run_away(line, f"more than {most} blocks were executed again and again", "repeated")
 
     def count_jump(self, place: Place) -> None:
         """Counts a jump back, so that an endless loop is found before it has run for long.
@@ -199,9 +199,10 @@ class Session:
         self.jumps += 1
         limits = self.settings.limits
         if self.jumps > limits.jumps:
-            self._run_away(place.line, f"more than {limits.jumps} jumps back were made")
+            self._run_away(place.line, f"more than {limits.jumps} jumps back were made", "jumps")
         if self.jumps - self.jumps_at_motion > limits.idle_jumps:
-            self._run_away(place.line, f"more than {limits.idle_jumps} jumps back were made without a motion")
+            problem = f"more than {limits.idle_jumps} jumps back were made without a motion"
+            self._run_away(place.line, problem, "idle_jumps")
 
     def check_repeats(self, block: ParsedBlock, word: Word, count: int) -> None:
         """Refuses a repeat count that `Limits.jumps` does not allow, before anything is repeated.
@@ -213,10 +214,10 @@ class Session:
         if count > most:
             self.end()
             raise block.error(
-                word, "runaway", f"{word.text} with {count} repeats", f"at most {most}, or a higher limit"
+                word, "runaway", f"{word.text} with {count} repeats", f"at most {most}, or a higher limits.jumps"
             )
 
-    def _run_away(self, line: int, problem: str) -> NoReturn:
+    def _run_away(self, line: int, problem: str, limit: str) -> NoReturn:
         self.end()
         place = Place(file=self.level.program.file, line=line, calls=self.level.calls)
-        raise GcodeError(place, "runaway", problem, "a program that ends, or a higher limit")
+        raise GcodeError(place, "runaway", problem, f"a program that ends, or a higher limits.{limit}")

@@ -150,7 +150,7 @@ class Watch:
             )
 
     def _on_stock(self) -> Iterator[str]:
-        """What was assumed or mended in the file of the stock."""
+        """Assumptions and repairs of the file of the stock."""
         parameters = self.header.parameters if self.header is not None else {}
         yield from (text for key, text in parameters.items() if _STOCK_NOTE.fullmatch(key))
 
