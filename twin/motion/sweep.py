@@ -72,7 +72,8 @@ class Sweep:
     @property
     def length_mm(self) -> float:
         """Distance travelled."""
-        return float(np.linalg.norm(self.end_mm - self.start_mm))
+        along = self.end_mm - self.start_mm
+        return math.sqrt(along.dot(along))
 
     @property
     def bounds_mm(self) -> tuple[FloatArray, FloatArray]:
