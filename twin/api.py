@@ -13,7 +13,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from twin.cli.show.progress import LineProgress, NoProgress, report
+from twin.cli.show.progress import LineProgress, NoProgress, show_record
 from twin.cli.stop import StopRequest
 from twin.errors import CollisionError, CompareError, SettingsError
 from twin.job import Job, load_job
@@ -80,11 +80,15 @@ def replay(
     archive = TemporaryArchive() if mcap is None else Path(mcap)
     files = archive.path if isinstance(archive, TemporaryArchive) else archive, None if rrd is None else Path(rrd)
     line = LineProgress() if progress else NoProgress()
-    with opened(*files, view=False, force=force) as write, line, closing(Replay(job, threads=threads)) as replaying:
+    with (
+        opened(*files, view=False, force=force) as write,
+        line,
+        closing(Replay(job, threads=threads, report=line.task)) as replaying,
+    ):
 
         def take(record: Record) -> None:
             write(record)
-            report(line, record)
+            show_record(line, record)
 
         with StopRequest() as stop:
             ending = drive(replaying, take, strict=strict, stopped=stop.came)

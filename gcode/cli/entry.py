@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 import typer
 
 from gcode.cli import exit_codes
-from gcode.cli.signals import end_in_order, ignore_signals
+from gcode.cli.signals import end_in_order, ignore_signals, report_stop
 from gcode.cli.streams import failed_output, finish_streams, prepare_streams
 from gcode.errors import GcodeError
 
@@ -24,6 +24,7 @@ def console_script(run: Callable[[Sequence[str]], int]) -> None:
     try:
         code = run(sys.argv[1:])
     except KeyboardInterrupt:
+        report_stop()
         code = exit_codes.SIGNAL + signal.SIGINT
     ignore_signals()
     finish_streams()

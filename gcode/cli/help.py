@@ -6,6 +6,8 @@ from typing import Any
 
 from typer.core import TyperCommand, TyperGroup
 
+from gcode.cli.signals import stop_reported
+
 
 class HelpCommand(TyperCommand):
     """A command with such a help text."""
@@ -21,6 +23,11 @@ class HelpGroup(TyperGroup):
     def get_params(self, ctx: Any) -> Any:
         """Its parameters, ``--help`` among them."""
         return _without_type_names(super().get_params(ctx))
+
+    def invoke(self, ctx: Any) -> Any:
+        """Carry out a command; Ctrl-C ends it with a word."""
+        with stop_reported():
+            return super().invoke(ctx)
 
 
 def _without_type_names(parameters: list[Any]) -> list[Any]:

@@ -38,7 +38,7 @@ class FakeReplay:
         self.job: Job | None = None
         self.closed = False
 
-    def open(self, job: Job, threads: int | None = None) -> FakeReplay:
+    def open(self, job: Job, threads: int | None = None, _report: object = None) -> FakeReplay:
         """What `twin.cli.commands.replay_work.open_replay` does."""
         self.job = job
         return self

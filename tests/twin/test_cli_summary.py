@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import time
 from dataclasses import replace
 
 import pytest
@@ -11,8 +12,10 @@ from support.fake_replay import FakeReplay
 from support.slot_run import SlotRun
 
 from twin import number_format as words
-from twin.cli.show.progress import LineProgress, NoProgress, progress
+from twin.cli.show.heartbeat import COMPILING, LogProgress
+from twin.cli.show.progress import LineProgress, NoProgress, doing, progress, working
 from twin.cli.show.summary import Timing, mean_force, print_summary
+from twin.jit.notice import compiling
 from twin.record import Collision, NcEvent, RunSummary
 from twin.run.watch import MOST_COLLISIONS, Watch
 
@@ -192,13 +195,39 @@ def test_volume(mm3: float, text: str) -> None:
     assert words.volume(mm3) == text
 
 
-def test_progress_is_silent_where_standard_error_is_no_terminal(capsys: pytest.CaptureFixture[str]) -> None:
-    with progress(quiet=False) as line:
-        assert isinstance(line, NoProgress)
+def test_short_work_is_silent_where_standard_error_is_no_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    assert isinstance(progress(quiet=True), NoProgress)
+    with progress(quiet=False) as line, working(quiet=False) as share, doing("comparing") as task:
+        assert isinstance(line, LogProgress)
         line.start(10.0)
         line.at(1.0, 3)
+        share("roughing", 0.5)
+        task("reading")
     captured = capsys.readouterr()
     assert (captured.out, captured.err) == ("", "")
+
+
+def test_lines_without_a_terminal_have_task_share_pace_and_time_left() -> None:
+    clock = iter([100.0, 104.0, 105.0, 107.0, 107.0])
+    line = LogProgress(lambda: next(clock))
+    line.task("slicing the stock")
+    assert line.text() == "preparing: slicing the stock (0:04.0)"
+    line.start(60.0)
+    line.at(30.0, 12)
+    assert line.text() == "replaying: 50 %, 0:30.0 of 1:00.0, 15.0x real time, line 12, about 0:02.0 left"
+
+
+def test_long_work_without_a_terminal_prints_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    with LogProgress(every_s=0.01) as line:
+        line.task("slicing the stock")
+        compiling()
+        compiling()
+        time.sleep(0.1)
+    time.sleep(0.02)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == COMPILING and lines.count(COMPILING) == 1
+    assert lines[1].startswith("preparing: slicing the stock (0:00.")
+    assert not capsys.readouterr().err
 
 
 def test_progress_shows_time_place_and_pace(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -207,10 +236,13 @@ def test_progress_shows_time_place_and_pace(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr("twin.cli.show.progress.errors", lambda: console)
     clock = iter([100.0, 102.0, 102.05])
     with LineProgress(lambda: next(clock)) as line:
+        line.task("reading slot.nc")
+        line._bar.refresh()
+        compiling()
         line.start(60.0)
         line.at(30.0, 12)
         line.at(31.0, 13)
     text = shown.getvalue()
-    assert "preparing" in text
+    assert "preparing: reading" in text and COMPILING in text
     assert " 50% 0:30.0 of 1:00.0  15.0x real time  line 12" in text
     assert "line 13" not in text

@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 from typer.core import TyperCommand, TyperGroup, TyperOption
 
+from gcode.cli.signals import stop_reported
 from gcode.cli.streams import closed_pipe_ends
 from twin.cli.metavars import type_metavar
 
@@ -29,8 +30,8 @@ class HelpGroup(TyperGroup):
         return _named(super().get_params(ctx))
 
     def invoke(self, ctx: Any) -> Any:
-        """Carry out a command; a reader that closes the pipe of standard output ends it without a message."""
-        with closed_pipe_ends():
+        """Carry out a command; a closed pipe of standard output ends it without a message, Ctrl-C with a word."""
+        with stop_reported(), closed_pipe_ends():
             return super().invoke(ctx)
 
 

@@ -18,6 +18,7 @@ from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
 
+from twin.jit.notice import compiling
 from twin.jit.store import Store
 
 _NUMBA: Any = numba
@@ -79,6 +80,7 @@ class KeptCode(NullCache):
         target_context.refresh()
         contents = self._files.read(self._folder, self._file(sig, target_context.codegen()))
         if contents is None:
+            compiling()
             return None
         try:
             kept_sig, parts = pickle.loads(contents)

@@ -222,13 +222,21 @@ class Replay:
         threads: how many work on slices and steps, None for all cores; results do not depend on it.
         preview: whether patches of the workpiece's surface are among the records, at key frames, where motions are
             divided.
+        report: called with each task of the preparation as it begins.
 
     Raises:
         TwinError, gcode.errors.GcodeError: a job, tool, stock or program that cannot be replayed.
     """
 
-    def __init__(self, job: Job, *, threads: int | None = None, preview: bool = True) -> None:
-        self._setup = prepare(job, threads=threads, preview=preview)
+    def __init__(
+        self,
+        job: Job,
+        *,
+        threads: int | None = None,
+        preview: bool = True,
+        report: Callable[[str], None] = lambda _task: None,
+    ) -> None:
+        self._setup = prepare(job, threads=threads, preview=preview, report=report)
         self._mesh_pitch_mm = job.simulation.preview_pitch_mm
 
     def __iter__(self) -> Iterator[Record]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,12 +67,15 @@ class Setup:
         self.solver.close()
 
 
-def prepare(job: Job, *, threads: int | None = None, preview: bool = True) -> Setup:
+def prepare(
+    job: Job, *, threads: int | None = None, preview: bool = True, report: Callable[[str], None] = lambda _task: None
+) -> Setup:
     """Read and check the whole program, slice the stock, build the tools; nothing is cut yet.
 
     Args:
         threads: how many work on slices and steps, None for all cores; results do not depend on it.
         preview: whether the workpiece's surface is recorded at key frames, where motions are divided.
+        report: called with each task as it begins.
 
     Raises:
         TwinError, gcode.errors.GcodeError: a job, tool, stock or program that cannot be replayed.
@@ -80,11 +83,15 @@ def prepare(job: Job, *, threads: int | None = None, preview: bool = True) -> Se
     threads = THREADS if threads is None else threads
     fineness = job.simulation
     tolerance = Tolerance.for_pitch(fineness.slice_pitch_mm)
+    report("slicing the stock")
     slices = stock_slices(job.stock, fineness.slice_pitch_mm)
+    report("building the tools")
     tools = _tools(job, tolerance)
     origin_mm = np.array(job.machine.offsets[job.stock.wcs])
     moves = program_moves(job.program, job.machine, job.tools, origin_mm, slices)
+    report(f"reading {job.program.file.name}")
     planned_time_s = moves.checked_time_s(job.machine.tool_change_s)
+    report("storing the slices")
     workpiece = PolygonSlices(slices) if fineness.store == "reference" else CellSlices(slices)
     frame_s = planned_time_s / FRAMES or math.inf
     return Setup(

@@ -40,6 +40,7 @@ def run_one(run: Path, measured: Path | None, options: Mapping[str, Any], output
     """
     from twin.cli.console import print_json, results, warn
     from twin.cli.early_end import warn_of_early_end
+    from twin.cli.show.progress import doing
 
     if outputs.view:
         from twin.sinks.rerun.viewer import require_viewer
@@ -51,7 +52,8 @@ def run_one(run: Path, measured: Path | None, options: Mapping[str, Any], output
     if log is None:
         raise CompareError(f"{run}: no log given, and its job has no measured.file; expected RUN.mcap MEASURED")
     warn_of_early_end(run)
-    found = compare_files(run, log, settings)
+    with doing(f"comparing {log.name} with {run.name}", quiet=outputs.as_json):
+        found = compare_files(run, log, settings)
     for warning in found.warnings:
         warn(warning)
     if outputs.as_json:

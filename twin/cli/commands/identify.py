@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -46,6 +45,7 @@ def identify(
     Methods: mean is linear least squares on mean forces; iterative searches until simulated mean forces match;
     waveform is least squares on the force over a revolution; it finds spindle phases and, with --runout, the runout.
     """
+    from twin.cli.show.progress import doing
     from twin.errors import IdentifyError
     from twin.identification.cuts.load import load_cuts
     from twin.identification.identify import identify as find
@@ -56,7 +56,7 @@ def identify(
         plot = out.with_suffix(".png")
     _check_suffixes(out, plot)
     refuse_existing([p for p in (out, plot) if p is not None], force=force)
-    with _progress_line() as report:
+    with doing("identifying", quiet=as_json) as report:
         result = find(cuts, report=report)
     try:
         _write(result, out, plot, force=force)
@@ -70,21 +70,6 @@ def identify(
     else:
         _print(cuts, result, {"Coefficients": out, "Plot": plot}, verbose=verbose)
     _warn(result)
-
-
-@contextmanager
-def _progress_line() -> Iterator[Callable[[str], None]]:
-    """A line with the present task, on a terminal."""
-    from rich.markup import escape
-
-    from twin.cli.console import errors
-
-    console = errors()
-    if not console.is_terminal:
-        yield lambda _: None
-        return
-    with console.status("") as status:
-        yield lambda text: status.update(escape(text))
 
 
 def _check_suffixes(out: Path | None, plot: Path | None) -> None:

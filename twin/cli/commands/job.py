@@ -34,7 +34,7 @@ def job(
     Every value that the program does not state is printed as assumed, and has a comment in the file. A job file that
     exists keeps all its lines: tables and tools that it lacks are added, and values that differ are reported.
     """
-    from twin.cli.console import say_json
+    from twin.cli.console import say, say_json
     from twin.cli.show.draft_notes import draft_json, print_notes, print_written
     from twin.drafting.draft import draft_job
     from twin.drafting.update import write_draft
@@ -49,4 +49,4 @@ def job(
     elif written is not None:
         print_written(written, quiet=quiet)
     else:
-        typer.echo(draft.toml_text(), nl=False)
+        say(draft.toml_text().removesuffix("\n"))

@@ -8,7 +8,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from twin.cli.show.progress import Progress, report
+from twin.cli.show.progress import Progress, show_record
 from twin.cli.stop import StopRequest
 from twin.job import Job
 from twin.record import Collision, Record, RunSummary
@@ -51,11 +51,11 @@ class Outcome:
     at_end: SurfaceMesh | None = None
 
 
-def open_replay(job: Job, threads: int | None = None) -> OpenReplay:
-    """Read the program, slice the stock, make the tools ready."""
+def open_replay(job: Job, threads: int | None = None, report: Callable[[str], None] = lambda _task: None) -> OpenReplay:
+    """Read the program, slice the stock, make the tools ready; ``report`` is called with each of these tasks."""
     from twin.simulation.replay import Replay
 
-    return Replay(job, threads=threads)
+    return Replay(job, threads=threads, report=report)
 
 
 def replay_job(
@@ -81,14 +81,14 @@ def replay_job(
         TwinError, GcodeError: the program cannot be replayed, or an output cannot be written.
     """
     begin = time.perf_counter()
-    with closing(open_replay(job, threads)) as replay, StopRequest() as stop:
+    with closing(open_replay(job, threads, progress.task)) as replay, StopRequest() as stop:
         ready = time.perf_counter()
         watch = Watch()
 
         def take(record: Record) -> None:
             write(record)
             watch.take(record)
-            report(progress, record)
+            show_record(progress, record)
 
         ending = drive(replay, take, strict=strict, stopped=stop.came)
         return Outcome(

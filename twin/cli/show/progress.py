@@ -10,6 +10,8 @@ from types import TracebackType
 from typing import Protocol, Self
 
 from twin.cli.console import errors
+from twin.cli.show.heartbeat import COMPILING, Heartbeat, LogProgress
+from twin.jit.notice import on_compiling
 from twin.number_format import clock
 from twin.record import NcEvent, Record, RunHeader, Step
 
@@ -19,6 +21,9 @@ _EVERY_S = 0.1
 
 class Progress(Protocol):
     """Shows how far a run has come."""
+
+    def task(self, what: str) -> None:
+        """The preparation of the run begins a task."""
 
     def start(self, total_s: float) -> None:
         """The run begins; its whole machine time is known."""
@@ -34,11 +39,13 @@ class Progress(Protocol):
 
 
 def progress(*, quiet: bool) -> Progress:
-    """A line on the terminal; nothing where standard error is not a terminal, or when ``quiet``."""
-    return NoProgress() if quiet or not sys.stderr.isatty() else LineProgress()
+    """A line on the terminal, or lines every ten seconds where standard error is none; nothing when ``quiet``."""
+    if quiet:
+        return NoProgress()
+    return LineProgress() if sys.stderr.isatty() else LogProgress()
 
 
-def report(line: Progress, record: Record) -> None:
+def show_record(line: Progress, record: Record) -> None:
     """Show how far a run has come, from the record at hand."""
     if isinstance(record, Step | NcEvent):
         line.at(record.t_s, record.nc_line)
@@ -48,6 +55,9 @@ def report(line: Progress, record: Record) -> None:
 
 class NoProgress:
     """Shows nothing."""
+
+    def task(self, what: str) -> None:
+        """Nothing."""
 
     def start(self, total_s: float) -> None:
         """Nothing."""
@@ -84,6 +94,11 @@ class LineProgress:
         self._task = self._bar.add_task("preparing", total=None, state="", left="")
         self._now = now
         self._total_s = self._begin = self._drawn = 0.0
+        self._compiling = on_compiling(lambda: self._bar.console.print(COMPILING, markup=False))
+
+    def task(self, what: str) -> None:
+        """See `Progress.task`."""
+        self._bar.update(self._task, description=f"preparing: {what}")
 
     def start(self, total_s: float) -> None:
         """See `Progress.start`."""
@@ -102,22 +117,31 @@ class LineProgress:
         self._bar.update(self._task, completed=t_s, state=state)
 
     def __enter__(self) -> Self:
+        self._compiling.__enter__()
         self._bar.start()
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self._bar.stop()
+        self._compiling.__exit__(kind, error, trace)
 
 
 @contextmanager
 def working(*, quiet: bool, even: bool = False) -> Iterator[Callable[[str, float], None]]:
-    """A bar for work in stages; yields a function of a stage's name and share done. Drawn where `progress` is.
+    """A bar for work in stages; yields a function of a stage's name and share done. Shown where `progress` is.
 
     Args:
         even: shares are those of the whole time, so that the time left can be estimated.
     """
-    if quiet or not sys.stderr.isatty():
+    if quiet:
         yield lambda _what, _share: None
+        return
+    if not sys.stderr.isatty():
+        state = ["beginning"]
+        with Heartbeat(lambda: state[0]):
+            yield lambda what, share: state.__setitem__(0, f"{what}: {100.0 * share:.0f} %")
         return
     from rich import progress as rich
 
@@ -130,5 +154,23 @@ def working(*, quiet: bool, even: bool = False) -> Iterator[Callable[[str, float
         transient=True,
     )
     task = bar.add_task("beginning", total=1.0)
-    with bar:
+    with on_compiling(lambda: bar.console.print(COMPILING, markup=False)), bar:
         yield lambda what, share: bar.update(task, description=what, completed=share)
+
+
+@contextmanager
+def doing(what: str, *, quiet: bool = False) -> Iterator[Callable[[str], None]]:
+    """A line with the present task of work whose length is not known; yields a function of a task's name."""
+    if quiet:
+        yield lambda _what: None
+        return
+    console = errors()
+    if not console.is_terminal:
+        state = [what]
+        with Heartbeat(lambda: state[0]):
+            yield lambda text: state.__setitem__(0, text)
+        return
+    from rich.markup import escape
+
+    with on_compiling(lambda: console.print(COMPILING, markup=False)), console.status(escape(what)) as status:
+        yield lambda text: status.update(escape(text))
