@@ -8,8 +8,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache, partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from support.fuzz.mutations import LIBRARY, STL, TABLE, TOML, Mutation, binary_mutated, mutated, text_mutated
+
+if TYPE_CHECKING:
+    from twin.measured.log import ForceLog, RawLog
 
 #: Files next to an input, which it names.
 Neighbours = dict[str, bytes]
@@ -55,16 +59,42 @@ def _written(*writers: Callable[[Path], object]) -> list[bytes]:
     return made
 
 
-def _log(name: str) -> Callable[[], list[bytes]]:
+def _log(*names: str) -> Callable[[], list[bytes]]:
     from support.measured_files import FORMATS
 
-    return lambda: _written(FORMATS[name][1])
+    return lambda: _written(*(FORMATS[name][1] for name in names))
 
 
 def _read_log(path: Path) -> object:
+    """Read a log and its forces; an error names the file."""
+    from twin.errors import MeasuredError
     from twin.measured.read import read_log
 
-    return read_log(path)
+    try:
+        return assert_sound(read_log(path))
+    except MeasuredError as error:
+        assert path.name in str(error), f"does not name the file: {error}"
+        raise
+
+
+def assert_sound(log: RawLog) -> ForceLog:
+    """Check what holds for every log that was read, and for its forces.
+
+    Raises:
+        AssertionError: a law is broken.
+        MeasuredError: the log has no forces.
+    """
+    import numpy as np
+
+    from twin.measured.forces import force_log
+
+    assert len(log.t_s) >= 1 and np.isfinite(log.t_s).all()
+    assert (np.diff(log.t_s) > 0.0).all()
+    assert 0.0 < log.rate_hz < np.inf
+    assert all(len(c.values) == len(log.t_s) for c in log.columns.values())
+    forces = force_log(log)
+    assert np.isfinite(forces.force_n).all()
+    return forces
 
 
 def _toml(tables: Callable[[], list[dict[str, object]]]) -> Callable[[], list[bytes]]:
@@ -281,8 +311,8 @@ def _read_library(path: Path) -> object:
 _TOML, _TABLE = partial(text_mutated, pieces=TOML), partial(text_mutated, pieces=TABLE)
 
 
-def _log_target(name: str, suffix: str, once: Mutation) -> Target:
-    return Target(suffix=suffix, seeds=_log(name), once=once, use=_read_log)
+def _log_target(suffix: str, once: Mutation, *names: str) -> Target:
+    return Target(suffix=suffix, seeds=_log(*names), once=once, use=_read_log)
 
 
 TARGETS: dict[str, Target] = {
@@ -302,13 +332,13 @@ TARGETS: dict[str, Target] = {
     "STL": Target(suffix=".stl", seeds=_boxes, once=_mutated_stl, use=_load_mesh),
     "run": Target(suffix=".mcap", seeds=_runs, once=_inside_mutated, use=_read_run),
     "comparison": Target(suffix=".mcap", seeds=_comparisons, once=_inside_mutated, use=_read_comparison),
-    "log, CSV": _log_target("csv", ".csv", _TABLE),
-    "log, DynoWare": _log_target("dynoware", ".txt", _TABLE),
-    "log, LVM": _log_target("lvm", ".lvm", _TABLE),
-    "log, TDMS": _log_target("tdms", ".tdms", binary_mutated),
-    "log, MATLAB 5": _log_target("mat5", ".mat", binary_mutated),
-    "log, MATLAB 7.3": _log_target("mat73", ".mat", binary_mutated),
-    "log, HDF5": _log_target("hdf5", ".h5", binary_mutated),
-    "log, Parquet": _log_target("parquet", ".parquet", binary_mutated),
-    "log, MCAP": _log_target("foreign mcap", ".mcap", _inside_mutated),
+    "log, CSV": _log_target(".csv", _TABLE, "csv"),
+    "log, DynoWare": _log_target(".txt", _TABLE, "dynoware"),
+    "log, LVM": _log_target(".lvm", _TABLE, "lvm"),
+    "log, TDMS": _log_target(".tdms", binary_mutated, "tdms"),
+    "log, MATLAB 5": _log_target(".mat", binary_mutated, "mat5"),
+    "log, MATLAB 7.3": _log_target(".mat", binary_mutated, "mat73"),
+    "log, HDF5": _log_target(".h5", binary_mutated, "hdf5", "hdf5 compound"),
+    "log, Parquet": _log_target(".parquet", binary_mutated, "parquet"),
+    "log, MCAP": _log_target(".mcap", _inside_mutated, "foreign mcap"),
 }
