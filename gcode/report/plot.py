@@ -43,6 +43,9 @@ _PROJECTIONS: Mapping[str, _Array] = MappingProxyType(
 )
 _RAPID = "#9aa0a6"
 _INK = "#3c4043"
+_EDGE = "#c4c7cc"
+#: Directions in the iso picture in which the ticks of the box's X, Y and Z edges stand.
+_OUTWARDS = np.array(((0.6, -1.0), (-0.6, -1.0), (-1.2, 0.0)))
 _TOOLS = ("#1f77b4", "#d95f02", "#2a9d5c", "#c2378f", "#7a5bc4", "#a6761d", "#16a3b8", "#c23b31", "#6b7a1f", "#5b6770")
 
 
@@ -104,10 +107,12 @@ class _Path:
     """Polylines: motions that follow each other, of one kind and tool.
 
     Attributes:
+        ends: first and last point of the program's path, empty without motions.
         rapids: of positioning motions.
         feeds: of motions at a feed, by tool.
     """
 
+    ends: list[_Array] = field(default_factory=list)
     rapids: list[_Array] = field(default_factory=list)
     feeds: dict[int, list[_Array]] = field(default_factory=dict)
 
@@ -129,6 +134,7 @@ def _path_of(events: Iterable[Event], tolerance_mm: float) -> _Path:
             run = []
         kind = (rapid, event.state.tool)
         points = points_mm(event, tolerance_mm)
+        path.ends = [path.ends[0] if path.ends else points[0], points[-1]]
         run.append(points[1:] if run else points)
     _add(path, kind, run)
     return path
@@ -154,10 +160,19 @@ def _figure(path: _Path, view: View, colour: ColourBy, title: str) -> Figure:
         _draw_by_tool(axes, path, view)
     else:
         _draw_by_height(figure, axes, path, view)
+    _draw_ends(axes, path, view)
     _dress(axes, bounds, view, title)
-    if path.rapids or colour == "tool":
-        axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.04), ncols=6, frameon=False, fontsize=8, labelcolor=_INK)
+    below = -0.04 if view == "iso" else -0.11
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, below), ncols=6, frameon=False, fontsize=8, labelcolor=_INK)
     return figure
+
+
+def _draw_ends(axes: Axes, path: _Path, view: View) -> None:
+    """Marks where the path starts and ends."""
+    start, end = (point @ _PROJECTIONS[view].T for point in path.ends)
+    style: dict[str, Any] = {"linestyle": "none", "marker": "o", "zorder": 5}
+    axes.plot(*start, markersize=11, markerfacecolor="none", markeredgecolor="#2a9d5c", mew=2.0, label="start", **style)
+    axes.plot(*end, markersize=5, markerfacecolor="#c23b31", markeredgecolor="#c23b31", label="end", **style)
 
 
 def _draw_rapids(axes: Axes, path: _Path, view: View) -> None:
@@ -195,6 +210,7 @@ def _draw_by_height(figure: Figure, axes: Axes, path: _Path, view: View) -> None
     made = LineCollection(list(chords[order] @ _PROJECTIONS[view].T), cmap=colours, linewidths=0.9, zorder=2)
     made.set_array(heights[order])
     made.set_capstyle("round")
+    made.set_label("feed, coloured by Z")
     axes.add_collection(made)
     if np.ptp(heights) > 1e-6:
         bar = figure.colorbar(made, ax=axes, shrink=0.7, pad=0.02, aspect=30)
@@ -232,14 +248,40 @@ def _dress(axes: Axes, bounds: tuple[_Array, _Array], view: View, title: str) ->
 
 
 def _draw_box(axes: Axes, low: _Array, high: _Array, view: View) -> None:
-    """The three edges of the path's box that meet in its lowest corner at the left, with their lengths."""
+    """The three edges of the path's box that meet in its lowest corner at the left, with ticks in mm."""
+    from matplotlib.ticker import MaxNLocator
+
+    largest = float((high - low).max())
     for axis, name in enumerate("XYZ"):
         far = low.copy()
         far[axis] = high[axis]
         if far[axis] - low[axis] < 1e-9:
             continue
         ends = np.array((low, far)) @ _PROJECTIONS[view].T
-        axes.plot(*ends.T, color="#c4c7cc", linewidth=0.8, zorder=0)
-        text = f"{name} {low[axis]:.6g} to {high[axis]:.6g}"
-        frame = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8}
-        axes.annotate(text, ends.mean(axis=0), fontsize=7, color=_INK, ha="center", va="center", zorder=3, bbox=frame)
+        axes.plot(*ends.T, color=_EDGE, linewidth=0.8, zorder=0)
+        outwards = _OUTWARDS[axis]
+        count = max(1, round(6 * (far[axis] - low[axis]) / largest))
+        for value in MaxNLocator(count).tick_values(low[axis], high[axis]):
+            if low[axis] - 1e-9 <= value <= high[axis] + 1e-9:
+                share = (value - low[axis]) / (far[axis] - low[axis])
+                _draw_tick(axes, ends[0] + share * (ends[1] - ends[0]), outwards, f"{value:g}", 7)
+        along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+        _draw_tick(axes, ends[1], np.array((2.0, 1.4)) * along, f"{name}, mm", 9, mark=False)
+
+
+def _draw_tick(axes: Axes, at: _Array, outwards: _Array, text: str, size: int, *, mark: bool = True) -> None:
+    """A text next to a point of the box; ``outwards`` is the text's direction in points."""
+    x, y = at.tolist()
+    right, up = (9.0 * outwards).tolist()
+    if mark:
+        axes.plot(x, y, marker="o", markersize=1.8, color=_EDGE, zorder=0)
+    axes.annotate(
+        text,
+        (x, y),
+        xytext=(right, up),
+        textcoords="offset points",
+        fontsize=size,
+        color=_INK,
+        ha="center",
+        va="center",
+    )

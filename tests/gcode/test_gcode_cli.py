@@ -323,6 +323,16 @@ def test_pictures(cli: Cli, nc: Path, tmp_path: Path, view: str, colour: str) ->
     assert out.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.parametrize("view", ["iso", "xz"])
+def test_a_picture_has_units_ticks_and_the_path_s_ends(cli: Cli, nc: Path, tmp_path: Path, view: str) -> None:
+    pytest.importorskip("matplotlib")
+    out = tmp_path / "p.svg"
+    assert cli("plot", nc, "-o", out, "--view", view)[0] == 0
+    texts = re.findall(r"<!-- (.*?) -->", out.read_text())
+    assert {"X, mm", "Z, mm", "start", "end", "rapid"} <= set(texts)
+    assert sum(bool(re.fullmatch(r"[−-]?\d+(\.\d+)?", text)) for text in texts) >= 6
+
+
 def test_a_program_without_motions_has_no_picture(cli: Cli, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     path = tmp_path / "none.nc"

@@ -53,10 +53,10 @@ def draw(plan: MoldPlan, stages: Sequence[Stage], folder: Path) -> list[Path]:
         draw_path(axes[0], result.path)
         if level is not None:
             draw_path(axes[1], result.path, level - _AT_MM, level + _AT_MM)
-            axes[1].set_title(f"level at z = {level:.2f} mm")
+            axes[1].set_title(f"its moves that end at Z = {level:.2f} mm")
         _draw_rest(figure, axes[-1], result, needle)
         minutes = result.time.total_s / 60.0
-        axes[0].set_title(f"{stage}: {result.path.name}, {minutes:.1f} min")
+        axes[0].set_title(f"{stage}: {result.path.name}, {minutes:.1f} min\nplan view of the path", fontsize=10)
         file = folder / f"{plan.job.output.name}_{stage}.png"
         with replacing(file) as partial:
             figure.savefig(partial, dpi=_DPI)
@@ -81,17 +81,43 @@ def draw_path(axes: Axes, path: ToolPath, low_z_mm: float = -np.inf, high_z_mm: 
             axes.add_collection(LineCollection(kept, colors=colour, linewidths=0.35, label=kind))
     axes.autoscale()
     axes.set_aspect("equal")
-    axes.set_xlabel("x, mm")
-    axes.set_ylabel("y, mm")
-    axes.legend(loc="upper right", fontsize=7)
+    axes.set_xlabel("X, mm")
+    axes.set_ylabel("Y, mm")
+    _draw_legend(axes)
+
+
+def _draw_legend(axes: Axes) -> None:
+    """Names of all lines below the picture, their lines thick enough to see the colour."""
+    legend = axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=6, fontsize=8, frameon=False)
+    for line in legend.get_lines():
+        line.set_linewidth(2.0)
 
 
 def _draw_rest(figure: Any, axes: Axes, result: StageResult, needle: DropCutter) -> None:
+    """Material above the part, on a scale that ends at the most there is; what is below the part would be a gouge."""
+    from matplotlib.colors import PowerNorm
+
     stock = result.stock
     above = stock.heights_mm - needle.drop(stock.points_mm).reshape(stock.heights_mm.shape)
-    most = max(float(np.percentile(above, 99.5)), 1e-3)
+    most = max(float(above.max()), 1e-3)
     extent = (float(stock.low_mm[0]), float(stock.high_mm[0]), float(stock.low_mm[1]), float(stock.high_mm[1]))
-    image = axes.imshow(above.T, origin="lower", extent=extent, vmin=0.0, vmax=most, cmap="viridis")
-    figure.colorbar(image, ax=axes, label="rest material, mm along z")
-    axes.set_title(f"after {result.stage}")
-    axes.set_xlabel("x, mm")
+    # a power below one shows thin layers next to the thickest, which is often one narrow corner
+    scale = PowerNorm(0.5, vmin=0.0, vmax=most)
+    image = axes.imshow(above.T, origin="lower", extent=extent, norm=scale, cmap="viridis")
+    figure.colorbar(image, ax=axes, label="rest material, mm along Z")
+    x, y = stock.points_mm[int(np.argmax(above))][:2]
+    axes.plot(
+        x,
+        y,
+        "o",
+        markersize=9,
+        markerfacecolor="none",
+        markeredgecolor="#d03c30",
+        mew=1.5,
+        ls="none",
+        label=f"most: {most:.3f} mm at X{x:.2f} Y{y:.2f}",
+    )
+    axes.set_title(f"rest material after {result.stage}, plan view")
+    axes.set_xlabel("X, mm")
+    axes.set_ylabel("Y, mm")
+    _draw_legend(axes)

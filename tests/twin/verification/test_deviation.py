@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import shapely
 import trimesh
+from matplotlib.figure import Figure
 from support.small_parts import box, prism, prism_corners
 
 from twin.verification.deviation import Deviation, Limits, deviation
@@ -158,3 +159,23 @@ def test_a_picture_without_any_machined_area(tmp_path: Path) -> None:
         warnings.simplefilter("error")
         plot_deviation(empty, tmp_path / "map.png")
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(("height", "names"), [(2.5, {"gouge"}), (3.04, {"excess"}), (3.0, set())])
+def test_the_picture_names_its_lines_and_marks_and_its_scale_holds_the_worst(
+    height: float, names: set[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
+    found = compare(step(height), step(3.0))
+    plot_deviation(found, tmp_path / "a.png", "a step")
+    plan, spread, bar = drawn[0].axes
+    low, high = bar.get_ylim()
+    assert low <= -1e3 * found.worst_gouge_mm and high >= 1e3 * found.worst_excess_mm
+    assert spread.get_xlim()[0] <= -1e3 * found.worst_gouge_mm
+    legend = plan.get_legend()
+    marks = {t.get_text() for t in legend.get_texts()} if legend is not None else set()
+    assert marks == {f"{name} out of tolerance" for name in names}
+    limits = spread.get_legend()
+    assert limits is not None
+    assert [t.get_text() for t in limits.get_texts()] == ["gouge allowed: 20 µm", "excess allowed: 20 µm"]

@@ -43,6 +43,7 @@ def write_plot(path: Path, sliced: SlicedPart, reaches: Mapping[str, Reach]) -> 
 
 def _draw_above(axes: Axes, sliced: SlicedPart, reaches: Mapping[str, Reach]) -> None:
     planes = sliced.slices.regions[2]
+    axes.plot([], [], color="0.65", linewidth=0.8, label="outlines of the part at several heights")
     for k in np.unique(np.linspace(0, len(planes) - 1, _LINES).astype(int)):
         lines = [np.concatenate((ring, ring[:1])) for ring in planes[k].rings]
         axes.add_collection(LineCollection(lines, colors="0.65", linewidths=0.6))
@@ -57,7 +58,7 @@ def _draw_above(axes: Axes, sliced: SlicedPart, reaches: Mapping[str, Reach]) ->
     _frame(axes, low[:2], high[:2], "X, mm", "Y, mm")
     axes.set_title("Uncut material, plan view")
     if reaches:
-        axes.legend(loc="lower center", fontsize=8, framealpha=0.9)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), fontsize=8, frameon=False)
 
 
 def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: Mapping[str, Reach]) -> None:
@@ -76,6 +77,11 @@ def _draw_cut(axes: Axes, sliced: SlicedPart, reaches: Mapping[str, Reach]) -> N
         color = _COLORS[number % len(_COLORS)]
         boxes = [b for region in reach.uncut_regions for b in _cut_boxes(region, axis, plane)]
         axes.add_collection(PolyCollection(boxes, facecolors=color, edgecolors="none", alpha=0.85))
+    axes.plot([], [], color="0.8", linewidth=5.0, label="part")
+    for number, (text, reach) in enumerate(reaches.items()):
+        if reach.uncut_regions:
+            axes.plot([], [], color=_COLORS[number % len(_COLORS)], linewidth=5.0, label=f"uncut by {text}")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, fontsize=8, frameon=False)
     reach_mm = max(8.0 * deepest.thickness_mm, 0.75 * float(np.ptp([deepest.low_mm[2], deepest.high_mm[2]])))
     middle = deepest.deepest_mm[[u, v]]
     _frame(axes, middle - reach_mm, middle + reach_mm, f"{_AXES[u]}, mm", "Z, mm")
