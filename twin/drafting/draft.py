@@ -334,7 +334,7 @@ class _Drafting:
         table.add(
             "angle_step_deg", fine.angle_deg, "" if fine.angle_reason == "given" else f"assumed: {fine.angle_reason}"
         )
-        table.add("axial_step_mm", min(fine.pitch_mm, 0.2))
+        table.add("axial_step_mm", fine.axial_mm)
         if note:
             self.notes.assume("simulation", f"slice pitch and step {fine.pitch_mm:g} mm", fine.pitch_reason)
         if fine.angle_reason != "given":

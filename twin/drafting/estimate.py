@@ -1,14 +1,15 @@
 """Time, memory and file sizes of a replay, estimated before it.
 
-The counts (steps, force samples, revolutions) follow from the motions below the top of the stock; the costs of one of
-each are those measured with the examples . Times are those of a
-usual processor with two threads.
+The counts (steps, force samples) follow from the motions below the top of the stock; the costs of one of each are
+those measured with ten programs. Sizes are within a factor of 1.5; times are those of a usual processor.
 """
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from typing import Any
+
+import numpy as np
 
 from twin.drafting.cuts import Cuts
 from twin.drafting.fineness import Fineness
@@ -17,12 +18,19 @@ from twin.number_format import clock
 
 #: Rate of rapids of a job that does not state one, mm/min.
 _RAPID_MM_MIN = 48_000.0
-#: Computing time of a run without its steps, of a step in the material, and of a force sample, s.
-_SETUP_S, _STEP_S, _SAMPLE_S = 3.0, 1.6e-3, 3e-6
-#: Archive: bytes of a force sample, of a step, of a block, and of 1 mm2 of the stock's surface in cells of 1 mm.
-_SAMPLE_B, _STEP_B, _MOTION_B, _SURFACE_B = 70.0, 190.0, 60.0, 2000.0
-#: Memory: of the program itself, and of a column of a slice, bytes.
-_PROGRAM_B, _COLUMN_B = 300e6, 300.0
+#: Computing time of a run without its steps, s.
+_SETUP_S = 3.0
+#: Computing time of a step in the material without and with forces, and of a force sample, s.
+_STEP_S, _FORCED_STEP_S, _SAMPLE_S = 0.7e-3, 1.3e-3, 3e-6
+#: Computing time for each axial element of the edge and spindle angle of a step, s.
+_ELEMENT_S = 5e-8
+#: Bytes of a force sample, of a step, and of a cell of the surface as drawn: in the archive, and in a recording.
+_ARCHIVE_B = (62.0, 130.0, 70.0)
+_RECORDING_B = (75.0, 400.0, 90.0)
+#: Cells along the longest side of the stock as drawn.
+_CELLS = 200.0
+#: Memory of the program itself, and of a column of the slices without and with forces, bytes.
+_PROGRAM_B, _COLUMN_B, _FORCED_COLUMN_B = 340e6, 100.0, 450.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +43,7 @@ class Estimate:
         samples: force samples, 0 without forces.
         computing_s: time of the replay on two threads.
         memory_bytes: largest memory.
-        archive_bytes: size of the archive.
+        archive_bytes, recording_bytes: sizes of the archive and of a rerun recording.
     """
 
     machine_time_s: float
@@ -44,12 +52,13 @@ class Estimate:
     computing_s: float
     memory_bytes: float
     archive_bytes: float
+    recording_bytes: float
 
     def __str__(self) -> str:
         return (
             f"{clock(self.machine_time_s)} of machine time, {self.samples:,} force samples; about "
             f"{clock(self.computing_s)} of computing, {_bytes(self.memory_bytes)} of memory, archive "
-            f"{_bytes(self.archive_bytes)}"
+            f"{_bytes(self.archive_bytes)}, recording (--rrd) {_bytes(self.recording_bytes)}"
         )
 
     def as_dict(self) -> dict[str, Any]:
@@ -67,19 +76,31 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, *, forces: bool) -> Es
         forces: whether forces are computed.
     """
     inside = cuts.feed.only(cuts.feed.low_mm[:, 2] < stock.high_mm[2])
-    turns = float((inside.time_s * inside.spindle_rpm).sum() / 60.0)
+    rise = np.maximum(inside.high_mm[:, 2] - inside.low_mm[:, 2], 1e-9)
+    share = np.minimum((stock.high_mm[2] - inside.low_mm[:, 2]) / rise, 1.0)
+    turns = float((inside.time_s * inside.spindle_rpm * share).sum() / 60.0)
     samples = round(turns * 360.0 / fine.angle_deg) if forces else 0
-    steps = round(float(inside.length_mm.sum()) / fine.pitch_mm) + len(inside.tool)
+    steps = round(float((inside.length_mm * share).sum()) / fine.pitch_mm) + len(inside.tool)
     x, y, z = stock.size_mm.tolist()
     surface = 2.0 * (x * y + y * z + z * x)
-    columns = surface / fine.pitch_mm**2
+    cells = surface / (max(x, y, z) / _CELLS) ** 2
+    depth = float(stock.high_mm[2] - inside.low_mm[:, 2].min(initial=stock.high_mm[2]))
+    elements = depth / fine.axial_mm * 360.0 / fine.angle_deg
+    step_s = _FORCED_STEP_S + _ELEMENT_S * elements if forces else _STEP_S
+    column = _FORCED_COLUMN_B if forces else _COLUMN_B
+
+    def size(parts: tuple[float, float, float]) -> float:
+        sample, step, cell = parts
+        return float(samples * sample + steps * step + cells * cell)
+
     return Estimate(
         machine_time_s=float(cuts.feed.time_s.sum()) + cuts.dwell_s + cuts.rapid_mm / _RAPID_MM_MIN * 60.0,
         steps=steps,
         samples=samples,
-        computing_s=_SETUP_S + steps * _STEP_S + samples * _SAMPLE_S,
-        memory_bytes=_PROGRAM_B + columns * _COLUMN_B,
-        archive_bytes=samples * _SAMPLE_B + steps * _STEP_B + cuts.motions * _MOTION_B + surface * _SURFACE_B,
+        computing_s=_SETUP_S + steps * step_s + samples * _SAMPLE_S,
+        memory_bytes=_PROGRAM_B + surface / fine.pitch_mm**2 * column,
+        archive_bytes=size(_ARCHIVE_B),
+        recording_bytes=size(_RECORDING_B),
     )
 
 

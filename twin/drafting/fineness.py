@@ -15,6 +15,8 @@ _SLICES_PER_DIAMETER = 30.0
 _COARSEST_MM = 0.25
 _PITCHES_MM = (0.01, 0.02, 0.025, 0.04, 0.05, 0.1, 0.2, 0.25, 0.4, 0.5, 1.0)
 _ANGLES_DEG = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+#: Largest height of an edge element, mm.
+_AXIAL_MM = 0.2
 #: Force samples of a run: more make archives of hundreds of megabytes.
 _MOST_SAMPLES = 1.5e6
 #: Slices of a stock, in all three directions, that a drafted job has at most.
@@ -37,6 +39,11 @@ class Fineness:
     angle_deg: float
     pitch_reason: str
     angle_reason: str
+
+    @property
+    def axial_mm(self) -> float:
+        """Height of an edge element."""
+        return min(self.pitch_mm, _AXIAL_MM)
 
 
 def fineness_of(feed: Feed, diameters_mm: Sequence[float], stock_mm: FloatArray, most_mm: float) -> Fineness:

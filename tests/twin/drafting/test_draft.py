@@ -222,3 +222,17 @@ def test_a_sound_program_has_no_warnings(tmp_path: Path) -> None:
 def test_the_door_has_the_draft(tmp_path: Path) -> None:
     assert twin.draft_job is draft_job
     assert json.dumps(drafted(tmp_path).estimate.as_dict())
+
+
+def test_the_size_of_the_archive_is_estimated_within_half(tmp_path: Path) -> None:
+    draft = drafted(tmp_path, material="Al7075-T6", pitch_mm=0.5, angle_step_deg=2.0)
+    run = twin.replay(draft.job(), mcap=tmp_path / "part.mcap")
+    assert draft.estimate.samples == pytest.approx(run.summary.samples, rel=0.05)
+    assert draft.estimate.machine_time_s == pytest.approx(run.summary.machine_time_s, rel=0.05)
+    assert 1.0 / 1.5 < draft.estimate.archive_bytes / run.path.stat().st_size < 1.5
+
+
+def test_a_run_without_forces_has_no_samples(tmp_path: Path) -> None:
+    estimate = drafted(tmp_path).estimate
+    assert estimate.samples == 0
+    assert estimate.archive_bytes < drafted(tmp_path, material="Al7075-T6").estimate.archive_bytes
