@@ -55,7 +55,7 @@ class RunHeader:
         planned_time_s: machine time of the whole program.
         force_on: always ``"tool"`` in records; readers change the sign for the workpiece.
         parameters: every setting that affects the result, as text by job-file key path.
-        attachments: job file, NC program, and stock STL if there is one.
+        attachments: job file, sizes of tools from libraries, NC program, and stock STL if there is one.
         job: key of the job file's path (`twin.archive.same_job.job_key`), empty if it is not known.
     """
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from twin.errors import ToolLibraryError
 from twin.settings.problems import Location, Problem, show
-from twin.tool_library import LibraryTool, LibraryUnit, ToolLibrary, read_tool_library
-from twin.tool_library.kinds import SIMULATED
+
+if TYPE_CHECKING:
+    from twin.tool_library import LibraryTool, LibraryUnit, ToolLibrary
 
 #: Values of a tool that is not found, so that the other tables are checked.
 _PLACEHOLDER = {"number": 1, "kind": "flat", "diameter_mm": 1.0, "teeth": 1, "flute_length_mm": 1.0}
@@ -24,6 +25,9 @@ class _Libraries:
 
     def read(self, name: str, unit: LibraryUnit) -> ToolLibrary:
         """A library by its path in the job file."""
+        # the readers of all formats are loaded only where a job names a library
+        from twin.tool_library import read_tool_library
+
         if (name, unit) not in self._read:
             self._read[name, unit] = read_tool_library(self._folder / name, unit)
         return self._read[name, unit]
@@ -73,6 +77,8 @@ def _keys(tool: LibraryTool, own: Mapping[str, Any]) -> dict[str, Any]:
     Raises:
         ToolLibraryError: a tool that cannot be simulated, and whose kind the job does not give.
     """
+    from twin.tool_library.kinds import SIMULATED
+
     kind = own.get("kind")
     if tool.kind not in SIMULATED and kind is None:
         return tool.as_job_table()

@@ -13,6 +13,8 @@ from twin.settings.file_kinds import kind_by_suffix, kind_by_text, other_kind
 from twin.settings.toml_hints import hint
 
 _UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+#: Characters of a line for which a correction is proposed, at most; patterns take longest on long runs of digits.
+_LONGEST_HINTED = 300
 _POSITION = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
@@ -86,6 +88,9 @@ def parse_toml(text: str, source: str, refuse: type[SettingsError] = SettingsErr
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise _syntax_error(source, text, str(error), refuse) from error
+    except (ValueError, RecursionError) as error:
+        what = "it is nested too deeply" if isinstance(error, RecursionError) else "a number has too many digits"
+        raise refuse(source, [f"not valid TOML: {what}"]) from error
 
 
 def _syntax_error(source: str, text: str, message: str, refuse: type[SettingsError]) -> SettingsError:
@@ -95,6 +100,6 @@ def _syntax_error(source: str, text: str, message: str, refuse: type[SettingsErr
     end = (len(lines), len(lines[-1]) + 1)
     line, column = end if position is None or position[1] is None else map(int, position.groups())
     what = _POSITION.sub("", message)
-    written = hint(lines[line - 1]) if line <= len(lines) else None
+    written = hint(lines[line - 1]) if line <= len(lines) and len(lines[line - 1]) <= _LONGEST_HINTED else None
     more = f"; {written}" if written is not None else ""
     return refuse(f"{source}:{line}:{column}", [f"not valid TOML: {what[:1].lower()}{what[1:]}{more}"])

@@ -19,6 +19,8 @@ _LENGTHS = {
     "m": 1000.0,
 }
 _ANGLES = {**dict.fromkeys(("deg", "degree", "degrees", "°", "º"), 1.0), "rad": math.degrees(1.0)}
+#: Characters of a size, at most.
+_LONGEST = 60
 _NUMBER = r"[-+]?(?:\d[\d.,]*|[.,]\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"({_NUMBER})\s*([^\d\s.,+-]*)")
 _FRACTION = re.compile(r"([-+]?)(?:(\d+)[\s-]+)?(\d+)\s*/\s*(\d+)\s*([^\d\s.,+/-]*)")
@@ -86,14 +88,16 @@ def _split(value: object, expected: str) -> tuple[float, str]:
 
 
 def _parsed(text: str, expected: str) -> tuple[float, str]:
+    if len(text) > _LONGEST:
+        raise ValueError(expected)
     if found := _FRACTION.fullmatch(text):
         sign, units, above, below, word = found.groups()
-        if len(text) > 40 or int(below) == 0:
+        if int(below) == 0:
             raise ValueError(expected)
         number = float(units or 0) + int(above) / int(below)
         return -number if sign == "-" else number, word.lower()
     found = _QUANTITY.fullmatch(text)
-    if found is None or len(text) > 60:
+    if found is None:
         raise ValueError(expected)
     try:
         return float(_with_point(found[1])), found[2].lower()

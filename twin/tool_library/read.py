@@ -12,7 +12,7 @@ from twin.errors import ToolLibraryError
 from twin.settings.file_kinds import kind_by_suffix
 from twin.tool_library.assemble import assemble, cleaned
 from twin.tool_library.file_text import json_of, read_bytes, text_of, unpacked
-from twin.tool_library.formats import freecad
+from twin.tool_library.formats import freecad, job_tables
 from twin.tool_library.formats.camotics import is_table, table_tools
 from twin.tool_library.formats.fusion import fusion_tools
 from twin.tool_library.formats.linuxcnc import is_tool_table, tool_table
@@ -30,7 +30,7 @@ _TOML = re.compile(r"\[\[?[A-Za-z_][\w.-]*\]")
 
 
 def read_tool_library(path: str | PathLike[str], unit: LibraryUnit = "mm") -> ToolLibrary:
-    """Read the tools of a library: Fusion 360, FreeCAD, LinuxCNC, CAMotics, Vectric, DIN 4000, Creo, or CSV.
+    """Read the tools of a library: Fusion 360, FreeCAD, LinuxCNC, CAMotics, Vectric, DIN 4000, Creo, CSV, or TOML.
 
     Args:
         path: the file.
@@ -70,6 +70,8 @@ def _read(data: bytes, path: Path, unit: LibraryUnit) -> tuple[str, list[Library
         form, raw = xml_tools(data, path)
         return form, _assembled(raw)
     text = text_of(data, path, legacy=True)
+    if job_tables.has_tables(text):
+        return "TOML", [*job_tables.table_tools(text, path)]
     if is_tool_table(text):
         return "LinuxCNC", _assembled(tool_table(text, path, unit))
     return "CSV", [*csv_tools(text, path, unit)]

@@ -272,6 +272,7 @@ def _read_parameters(path: Path) -> object:
 def _libraries() -> list[bytes]:
     """A library of every format, and one packed."""
     from support import tool_libraries as made
+    from twin.settings.toml_text import toml_text
 
     tapered = made.fusion_tool(type="tapered mill", RE=0.5, DC=1.0, TA=5.0, expressions={"tool_diameter": "1/16 in"})
     fusion = made.fusion_library(made.fusion_tool(), made.fusion_tool(type="chamfer mill", unit="inches"), tapered)
@@ -282,7 +283,8 @@ def _libraries() -> list[bytes]:
     )
     bits = (made.freecad_bit(), made.freecad_library("bit.fctb", "gone.fctb"), made.FREECAD_HOLDER, made.CAMOTICS)
     others = (made.vectric_database(), made.din_tools(made.din_tool(), made.din_tool(BLD="6", F3="L")), made.CREO)
-    return [fusion, made.zipped(fusion), *bits, *(text.encode() for text in rows), *others]
+    jobs = [toml_text(data).encode() for data in _jobs()]
+    return [fusion, made.zipped(fusion), *jobs, *bits, *(text.encode() for text in rows), *others]
 
 
 def _library_neighbours() -> Neighbours:

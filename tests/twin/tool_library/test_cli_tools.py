@@ -66,6 +66,8 @@ def test_tools_written_as_toml_are_tables_of_a_job(shop: Path, capsys: pytest.Ca
     assert '# T7 "8.5 drill" cannot be simulated' in text
     Path("slot.nc").write_text(PROGRAM)
     assert job_from_dict(job_data(tools=tables[:1]), shop).tools[0].diameter_mm == 6.0
+    again = read_tool_library("tools.toml")
+    assert [tool.as_job_table() for tool in again.tools] == tables
 
 
 def test_tools_written_as_csv_are_the_same_tools(shop: Path) -> None:

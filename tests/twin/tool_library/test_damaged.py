@@ -34,6 +34,7 @@ LIBRARY = fusion_library(fusion_tool())
         (b"\xff\xfe\x00", "library: byte 0x00 in line 1 is not UTF-16"),
         (b"\x89PNG\r\n\x1a\n\0\0\0", "library: byte 0x89 in line 1 is not UTF-8"),
         (b"[program]\nfile = 'a.nc'\n", "library: is not a tool library: no row of headings with a diameter"),
+        (b"[[tools]]\nnumber = \n", "library:2:10: not valid TOML: invalid value"),
         (zipped(LIBRARY)[:-40], "library: the zip file is damaged or encrypted"),
         (zipped(LIBRARY, "other.json"), "library: the zip file holds other.json; expected tools.json"),
         (zipped(b"[]"), "library: JSON without tools"),

@@ -12,8 +12,10 @@ from support.tool_libraries import FUSION_CSV
 from twin.errors import ToolLibraryError
 from twin.tool_library import LibraryTool, ToolCylinder, read_tool_library
 from twin.tool_library.assemble import assemble
+from twin.tool_library.formats.job_tables import table_tools
 from twin.tool_library.formats.plain_csv import csv_text, csv_tools
 from twin.tool_library.raw_tool import Frustum, RawTool, Size
+from twin.tool_library.write import job_text
 
 PATH = Path("tools.csv")
 
@@ -108,3 +110,11 @@ def test_a_file_in_windows_encoding_is_read(tmp_path: Path) -> None:
     path = tmp_path / "werkzeuge.csv"
     path.write_bytes("number,name,diameter_mm\n1,Fräser,8\n".encode("cp1252"))
     assert read_tool_library(path).tools[0].name == "Fräser"
+
+
+@settings(max_examples=30)
+@given(st.lists(RAW, min_size=1, max_size=3))
+def test_tables_written_for_a_job_are_read_back_equal(raw: list[RawTool]) -> None:
+    tools = [assemble(tool) for tool in raw]
+    again = [*table_tools(job_text(tools, "tools"), PATH)]
+    assert [tool.as_job_table() for tool in again] == [tool.as_job_table() for tool in tools if tool.simulated]
