@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
 from support.rs274 import AXES as AXIS_INDICES
-from support.rs274 import NUMBER, RS274, TURNING, Listing, run_text
+from support.rs274 import NUMBER, RS274, TURNING, run_text
 
 from gcode.cycles import (
     LINUXCNC_CYCLES,
@@ -104,12 +105,12 @@ class Control:
         return ("orient",) if isinstance(step, Orient) else ("stop",)
 
 
-def theirs(output: Listing, control: Control) -> list[tuple]:
+def theirs(calls: Sequence[tuple[str, str]], control: Control) -> list[tuple]:
     """The steps of a canonical listing in the plane's coordinates, mm."""
     places = AXIS_INDICES[control.plane]
     steps: list[tuple] = []
     started = False
-    for name, inside in output.calls:
+    for name, inside in calls:
         numbers = [float(n) for n in NUMBER.findall(inside)]
         if name == "SET_FEED_RATE":
             started = numbers[0] > 0.0
@@ -124,7 +125,6 @@ def theirs(output: Listing, control: Control) -> list[tuple]:
             steps.append(("spindle", float(TURNING[name])))
         elif name in ("ORIENT_SPINDLE", "PROGRAM_STOP"):
             steps.append(("orient" if name.startswith("ORIENT") else "stop",))
-    assert not output.error, output.error
     return settled(steps)
 
 
@@ -144,11 +144,22 @@ def same(ours: list[tuple], expected: list[tuple], text: str) -> None:
         assert math.dist(step[1:], wanted[1:]) < TOLERANCE_MM, (number, step, wanted, text)
 
 
-def compare(control: Control, folder: Path) -> None:
-    text = "\n".join([*control.lines, "M2", ""])
-    turning_on, *expected = theirs(run_text(text, folder), control)
-    assert turning_on == ("spindle", 1.0)
-    same(control.steps, expected, text)
+#: Between programs: dwell and modes of a cycle are kept after it, and the next program takes none of them over.
+RESET = "G17 G21 G90 G98 F100 S500 M3\nG0 Z10\nG82 X0 Y0 Z-1 R1 P0\nG80 M5\n"
+
+
+def compare(controls: Sequence[Control], folder: Path) -> None:
+    """Run programs one after the other in one process, each between two comments."""
+    texts = ["\n".join([*control.lines, ""]) for control in controls]
+    output = run_text("".join(f"{RESET}(BEGIN)\n{text}(END)\n" for text in texts) + "M2\n", folder)
+    assert not output.error, output.error
+    begins, ends = (
+        [n for n, call in enumerate(output.calls) if call == ("COMMENT", f'"{word}"')] for word in ("BEGIN", "END")
+    )
+    for control, text, begin, end in zip(controls, texts, begins, ends, strict=True):
+        turning_on, *expected = theirs(output.calls[begin:end], control)
+        assert turning_on == ("spindle", 1.0)
+        same(control.steps, expected, text)
 
 
 def random_words(source: random.Random, control: Control, code: str, *, all_of_them: bool) -> dict[str, float]:
@@ -208,15 +219,16 @@ def random_control(source: random.Random) -> Control:
     return control
 
 
-@pytest.mark.parametrize("seed", range(60))
-def test_random_cycles(seed: int, tmp_path: Path) -> None:
-    compare(random_control(random.Random(seed)), tmp_path)
+def test_random_cycles(tmp_path: Path) -> None:
+    compare([random_control(random.Random(seed)) for seed in range(60)], tmp_path)
 
 
-@pytest.mark.parametrize("plane", [17, 18, 19])
-@pytest.mark.parametrize("return_to_r", [True, False])
 @pytest.mark.parametrize("code", LINUXCNC_CYCLES.cycles)
-def test_every_cycle_with_a_row_of_holes(code: str, plane: int, return_to_r: bool, tmp_path: Path) -> None:
+def test_every_cycle_with_a_row_of_holes(code: str, tmp_path: Path) -> None:
+    compare([row_of_holes(code, plane, to_r) for plane in AXES for to_r in (True, False)], tmp_path)
+
+
+def row_of_holes(code: str, plane: int, return_to_r: bool) -> Control:
     source = random.Random(f"{code}{plane}{return_to_r}")
     control = Control(plane, 1.0)
     if code == "G74":
@@ -233,22 +245,22 @@ def test_every_cycle_with_a_row_of_holes(code: str, plane: int, return_to_r: boo
     if not LINUXCNC_CYCLES.cycles[code].repeats:
         del words["L"]
     control.cycle(code, words)
-    compare(control, tmp_path)
+    return control
 
 
-@pytest.mark.parametrize(
-    ("peck", "r", "bottom"),
-    [(0.1, 2.0, -1.0), (0.1, 0.1, -0.6), (0.3, 1.0, -2.0), (1.5, 2.0, -4.0), (0.7, 0.7, -1.4), (0.2, 1.0, -1.0)],
-)
-@pytest.mark.parametrize("unit_mm", [1.0, 25.4])
-def test_as_many_pecks_where_they_end_at_the_bottom(
-    peck: float, r: float, bottom: float, unit_mm: float, tmp_path: Path
-) -> None:
+PECKS = [(0.1, 2.0, -1.0), (0.1, 0.1, -0.6), (0.3, 1.0, -2.0), (1.5, 2.0, -4.0), (0.7, 0.7, -1.4), (0.2, 1.0, -1.0)]
+
+
+def test_as_many_pecks_where_they_end_at_the_bottom(tmp_path: Path) -> None:
+    compare([pecks(*sizes, unit_mm) for sizes in PECKS for unit_mm in (1.0, 25.4)], tmp_path)
+
+
+def pecks(peck: float, r: float, bottom: float, unit_mm: float) -> Control:
     control = Control(17, unit_mm)
     control.rapid(0.0, 0.0, 3.0)
     control.cycle("G83", {"X": 1.0, "Z": bottom, "R": r, "Q": peck})
     control.cycle("G73", {"X": 2.0, "Z": bottom, "R": r, "Q": peck})
-    compare(control, tmp_path)
+    return control
 
 
 def test_numbers_given_before_take_the_unit_in_force(tmp_path: Path) -> None:
