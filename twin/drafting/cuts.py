@@ -16,7 +16,7 @@ from gcode.settings import NUMBERED_OFFSETS, MachineSettings, ToolOffset
 from twin.arrays import FloatArray
 
 #: Position of the gauge point at the reference point and at the start of the program, above all work, mm.
-_HOME = (0.0, 0.0, 500.0)
+_HOME = (0.0, 0.0, 100.0)
 _LEVEL_MM = 1e-4
 _FEEDING = (MotionKind.FEED, MotionKind.ARC, MotionKind.TAP)
 

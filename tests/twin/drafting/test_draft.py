@@ -228,7 +228,7 @@ def test_the_size_of_the_archive_is_estimated_within_half(tmp_path: Path) -> Non
     draft = drafted(tmp_path, material="Al7075-T6", pitch_mm=0.5, angle_step_deg=2.0)
     run = twin.replay(draft.job(), mcap=tmp_path / "part.mcap")
     assert draft.estimate.samples == pytest.approx(run.summary.samples, rel=0.05)
-    assert draft.estimate.machine_time_s == pytest.approx(run.summary.machine_time_s, rel=0.05)
+    assert draft.estimate.machine_time_s == pytest.approx(run.summary.machine_time_s, rel=0.1)
     assert 1.0 / 1.5 < draft.estimate.archive_bytes / run.path.stat().st_size < 1.5
 
 
