@@ -106,7 +106,7 @@ def test_a_signal_during_set_up_leaves_nothing(
         signal.raise_signal(number)
         return FakeReplay()
 
-    monkeypatch.setattr("twin.cli.commands.replay_work.open_replay", preparing)
+    monkeypatch.setattr("twin.cli.commands.runs.replay_work.open_replay", preparing)
     monkeypatch.setattr(sys, "argv", ["twin", "replay", str(job)])
     for which in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(which, signal.SIG_DFL)

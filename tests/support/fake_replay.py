@@ -39,7 +39,7 @@ class FakeReplay:
         self.closed = False
 
     def open(self, job: Job, threads: int | None = None, _report: object = None) -> FakeReplay:
-        """What `twin.cli.commands.replay_work.open_replay` does."""
+        """What `twin.cli.commands.runs.replay_work.open_replay` does."""
         self.job = job
         return self
 

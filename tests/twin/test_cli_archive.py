@@ -137,7 +137,7 @@ def test_mesh_of_a_job_is_made_after_its_replay(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fake = FakeReplay()
-    monkeypatch.setattr("twin.cli.commands.replay_work.open_replay", fake.open)
+    monkeypatch.setattr("twin.cli.commands.runs.replay_work.open_replay", fake.open)
     out = tmp_path / "part.stl"
     assert run(["mesh", str(job_folder(tmp_path)), str(out)]) == 0
     assert capsys.readouterr().out == f"4 triangles written to {out}\n"
@@ -150,7 +150,7 @@ def test_mesh_refuses_before_the_replay(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fake = FakeReplay()
-    monkeypatch.setattr("twin.cli.commands.replay_work.open_replay", fake.open)
+    monkeypatch.setattr("twin.cli.commands.runs.replay_work.open_replay", fake.open)
     job, out = job_folder(tmp_path), tmp_path / "part.stl"
     out.write_text("mine")
     assert run(["mesh", str(job), str(out)]) == 1

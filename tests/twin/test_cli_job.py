@@ -29,7 +29,7 @@ def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def replayed(monkeypatch: pytest.MonkeyPatch) -> FakeReplay:
     """The replay that the command makes."""
     fake = FakeReplay(collision=False)
-    monkeypatch.setattr("twin.cli.commands.replay_work.open_replay", fake.open)
+    monkeypatch.setattr("twin.cli.commands.runs.replay_work.open_replay", fake.open)
     return fake
 
 

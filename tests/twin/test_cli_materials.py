@@ -45,7 +45,7 @@ def test_material_of_the_command_line_replaces_the_job_s(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fake = FakeReplay(collision=False)
-    monkeypatch.setattr("twin.cli.commands.replay_work.open_replay", fake.open)
+    monkeypatch.setattr("twin.cli.commands.runs.replay_work.open_replay", fake.open)
     assert run(["replay", str(job_folder(tmp_path)), "--material", "7075"]) == 0
     assert fake.job is not None and fake.job.cutting is not None and fake.job.cutting.material == "Al7075-T6"
     assert "note: --material: the coefficients of Al7075-T6 replace those of the job" in capsys.readouterr().err

@@ -30,7 +30,7 @@ def use(monkeypatch: pytest.MonkeyPatch) -> Use:
 
     def install(**options: object) -> FakeReplay:
         fake = FakeReplay(**options)  # type: ignore[arg-type]
-        monkeypatch.setattr("twin.cli.commands.replay_work.open_replay", fake.open)
+        monkeypatch.setattr("twin.cli.commands.runs.replay_work.open_replay", fake.open)
         return fake
 
     return install

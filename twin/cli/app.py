@@ -12,28 +12,43 @@ from twin.cli.help import HelpCommand, HelpGroup
 
 #: Options that print help.
 _HELP_OPTIONS = ("-h", "--help")
-#: The commands, and the line of each in the program's help, which is printed without importing them.
-COMMANDS: Mapping[str, str] = {
-    "replay": "Replay an NC program, or the job of one: remove material, compute cutting forces, archive the run.",
-    "job": "Draft a job file from an NC program: tools from its comments, stock from its motions, resolution to suit "
-    "them.",
-    "view": "Show an archived run, or an archived comparison, in the rerun viewer.",
-    "info": "Print the contents of an archive: summary of the run, program, stock, tools, messages, attached files.",
-    "report": "Write a page about a run: summary, forces by tool and line, worst positions, collisions, warnings.",
-    "export": "Write every force sample of a run as CSV or Parquet.",
-    "compare": "Compare a measured force log with a run: errors, harmonics, report.",
-    "materials": "List cutting coefficients of materials with their sources, or print one of them.",
-    "tools": "List, check and convert tool libraries: Fusion 360, FreeCAD, LinuxCNC, Vectric, CAMotics, DIN 4000, CSV.",
-    "identify": "Find cutting coefficients from test cuts, with their errors.",
-    "mesh": "Write the machined part as a triangle mesh.",
-    "reach": "Find the material that tools cannot reach on a part: position, volume, thickness.",
-    "paths": "Make an NC program from a part's STL file, and a job file that replays it.",
-    "verify": "Replay a job without forces and compare the machined surface with the design: "
-    "gouges, excess material, positions.",
-    "mold": "Machine a mold from its STL file: roughing, semi-finishing of rest material, finishing; "
-    "one program per stage.",
-    "schema": "Print the JSON Schema of a job file or settings file, for editors that complete and check TOML.",
+#: The commands by the folder of their modules, and the line of each in the program's help, which is printed without
+#: importing them.
+_ROOMS: Mapping[str, Mapping[str, str]] = {
+    "runs": {
+        "replay": "Replay an NC program, or the job of one: remove material, compute cutting forces, archive the run.",
+        "job": "Draft a job file from an NC program: tools from its comments, stock from its motions, resolution to "
+        "suit them.",
+        "view": "Show an archived run, or an archived comparison, in the rerun viewer.",
+        "report": "Write a page about a run: summary, forces by tool and line, worst positions, collisions, warnings.",
+        "info": "Print the contents of an archive: summary of the run, program, stock, tools, messages, attached "
+        "files.",
+        "export": "Write every force sample of a run as CSV or Parquet.",
+        "mesh": "Write the machined part as a triangle mesh.",
+    },
+    "logs": {
+        "compare": "Compare a measured force log with a run: errors, harmonics, report.",
+        "identify": "Find cutting coefficients from test cuts, with their errors.",
+    },
+    "parts": {
+        "reach": "Find the material that tools cannot reach on a part: position, volume, thickness.",
+        "paths": "Make an NC program from a part's STL file, and a job file that replays it.",
+        "verify": "Replay a job without forces and compare the machined surface with the design: "
+        "gouges, excess material, positions.",
+        "mold": "Machine a mold from its STL file: roughing, semi-finishing of rest material, finishing; "
+        "one program per stage.",
+    },
+    "tables": {
+        "tools": "List, check and convert tool libraries: Fusion 360, FreeCAD, LinuxCNC, Vectric, CAMotics, DIN 4000, "
+        "CSV.",
+        "materials": "List cutting coefficients of materials with their sources, or print one of them.",
+        "schema": "Print the JSON Schema of a job file or settings file, for editors that complete and check TOML.",
+    },
 }
+#: Folder of each command's module.
+_ROOM = {name: room for room, commands in _ROOMS.items() for name in commands}
+#: The line of each command in the program's help.
+COMMANDS: Mapping[str, str] = {name: line for commands in _ROOMS.values() for name, line in commands.items()}
 
 
 def app_for(arguments: Sequence[str]) -> typer.Typer:
@@ -60,7 +75,7 @@ def _program(names: Iterable[str]) -> typer.Typer:
 
 
 def _command(name: str) -> Callable[..., Any]:
-    command: Callable[..., Any] = getattr(import_module(f"twin.cli.commands.{name}"), name)
+    command: Callable[..., Any] = getattr(import_module(f"twin.cli.commands.{_ROOM[name]}.{name}"), name)
     return command
 
 

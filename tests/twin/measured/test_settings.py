@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from pydantic import BaseModel
 
-from twin.cli.commands.compare import compare
+from twin.cli.commands.logs.compare import compare
 from twin.comparison.batch import BatchRow
 from twin.errors import SettingsError
 from twin.identification.cuts.cuts_file import Cut, Shared

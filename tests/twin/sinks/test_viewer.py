@@ -60,7 +60,7 @@ def test_every_command_states_it_before_its_work(
     def never(*_: Any) -> None:
         raise AssertionError("the replay was prepared")
 
-    monkeypatch.setattr("twin.cli.commands.replay_work.open_replay", never)
+    monkeypatch.setattr("twin.cli.commands.runs.replay_work.open_replay", never)
     job = job_folder(tmp_path)
     assert run([str(job) if a == "JOB" else a for a in arguments]) == 1
     assert capsys.readouterr().err.startswith("error: there is no screen for the viewer")

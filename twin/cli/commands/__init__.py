@@ -1,1 +1,1 @@
-"""One module a command of `twin`."""
+"""The commands of `twin`, one module each, in folders by subject."""

@@ -9,7 +9,7 @@ from twin.record import Collision, RunSummary, ToolSummary
 
 if TYPE_CHECKING:
     from twin.archive import RunInfo
-    from twin.cli.commands.replay_work import Outcome
+    from twin.cli.commands.runs.replay_work import Outcome
 
 _FORCE_NAMES = ("x", "y", "z", "resultant")
 

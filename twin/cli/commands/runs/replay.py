@@ -14,8 +14,8 @@ from twin.cli.options import options_from
 from twin.drafting.settings import DraftSettings
 
 if TYPE_CHECKING:
-    from twin.cli.commands.replay_source import Source
-    from twin.cli.commands.replay_work import Outcome
+    from twin.cli.commands.runs.replay_source import Source
+    from twin.cli.commands.runs.replay_work import Outcome
 
 #: Keys of a draft that have options of their own, for jobs too.
 _OWN_OPTIONS = ("material", "dialect", "tool", "m_codes")
@@ -135,8 +135,8 @@ def replay(
     stops the replay; its outputs are complete up to there. A second Ctrl-C discards them. A replay that ends with an
     error leaves no outputs.
     """
-    from twin.cli.commands.replay_source import source_of
-    from twin.cli.commands.replay_work import replay_job
+    from twin.cli.commands.runs.replay_source import source_of
+    from twin.cli.commands.runs.replay_work import replay_job
     from twin.cli.show.progress import progress
     from twin.sinks.outputs import opened
 

@@ -83,7 +83,7 @@ def compare(
     Every correction is printed and stored. Only the delay is found by the program unless you give it; all other
     corrections are off unless you turn them on.
     """
-    from twin.cli.commands.compare_work import Outputs, run_batch, run_one
+    from twin.cli.commands.logs.compare_work import Outputs, run_batch, run_one
 
     options = {**windows, **reading, **corrections}
     outputs = Outputs(report=report, as_json=as_json, view=view, rrd=rrd, mcap=mcap, table=out)

@@ -44,7 +44,7 @@ def _from_run(run: Path) -> SurfaceMesh:
 
 
 def _from_job(job_file: Path) -> SurfaceMesh:
-    from twin.cli.commands.replay_work import replay_job
+    from twin.cli.commands.runs.replay_work import replay_job
     from twin.cli.show.progress import progress
     from twin.job import load_job
 

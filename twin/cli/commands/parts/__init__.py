@@ -1,0 +1,1 @@
+"""Commands about parts: reach, tool paths, verification, molds."""

@@ -1,0 +1,1 @@
+"""Commands about runs: making, showing, exporting them."""

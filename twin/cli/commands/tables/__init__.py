@@ -1,0 +1,1 @@
+"""Commands about tables: tool libraries, materials, schemas."""
