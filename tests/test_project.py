@@ -191,7 +191,7 @@ def test_the_command_lines_page_has_every_command_and_option() -> None:
     page = (ROOT / "docs" / "command-line.md").read_text()
     commands = [c.callback.__name__ for c in whole_app().registered_commands if c.callback is not None and not c.hidden]
     assert commands == re.findall(r"^\| `twin (\w+)", page, flags=re.M)
-    options = set(re.findall(r'"(--[a-z-]+)"', (ROOT / "twin" / "cli" / "commands" / "replay.py").read_text()))
+    options = set(re.findall(r'"(--[a-z-]+)"', (ROOT / "twin" / "cli" / "commands" / "runs" / "replay.py").read_text()))
     assert options
     assert {o for o in options if o not in page} == set()
 
