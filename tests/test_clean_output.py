@@ -25,6 +25,7 @@ from twin.sinks.mcap_sink import McapSink
 
 #: Colour, end of the title, a C1 introducer, right-to-left override and mark, delete.
 EVIL = "a\x1b[31mb\x1b]0;c\x07d\x9be\u202ef\u200fg\x7f"
+LIBRARY = "name,diameter\n"
 ACTING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
 
@@ -67,6 +68,7 @@ CASES: dict[str, Callable[[Path], list[str]]] = {
     "value": lambda f: of_toml(f, f"\n[output]\nforce_on = {json.dumps(EVIL)}\n".replace("\x7f", "\\u007f")),
     "mesh": lambda f: ["twin", "reach", str(nc_file(f, f"solid {EVIL}\n", f"{EVIL}.stl")), "--tool", "ball 6"],
     "archive": lambda f: ["twin", "info", str(nc_file(f, EVIL, f"{EVIL}.mcap"))],
+    "tool library": lambda f: ["twin", "tools", str(nc_file(f, f"{LIBRARY}{EVIL},{EVIL}\n{LIBRARY}", f"{EVIL}.csv"))],
     "argument": lambda _: ["twin", "export", EVIL],
 }
 

@@ -36,12 +36,15 @@ def signals() -> Iterator[None]:
 
 def commands(folder: Path) -> dict[str, tuple[Callable[[list[str]], int], list[str]]]:
     (program := folder / "p.nc").write_text(PROGRAM)
+    (library := folder / "tools.csv").write_text("number,diameter_mm\n1,6\n")
     archive, nc = str(ARCHIVE), str(program)
     return {
         "info": (twin.cli.run, ["info", archive]),
         "info --json": (twin.cli.run, ["info", archive, "--json"]),
         "export": (twin.cli.run, ["export", archive, str(folder / "f.csv")]),
         "mesh": (twin.cli.run, ["mesh", archive, str(folder / "o.stl")]),
+        "tools": (twin.cli.run, ["tools", str(library), "-o", str(folder / "t.toml")]),
+        "tools --json": (twin.cli.run, ["tools", str(library), "--json"]),
         "schema": (twin.cli.run, ["schema"]),
         "--help": (twin.cli.run, ["--help"]),
         "--version": (twin.cli.run, ["--version"]),

@@ -201,3 +201,10 @@ def test_files_that_cannot_be_read(tmp_path: Path, content: bytes | None, messag
     with pytest.raises(CutsError, match=r"cuts\.toml") as caught:
         load_cuts(path)
     assert message in str(caught.value)
+
+
+def test_the_tool_can_come_from_a_library(tmp_path: Path) -> None:
+    (tmp_path / "shop.csv").write_text("number,kind,diameter_mm,teeth,flute_length_mm\n3,ball,16,2,18\n")
+    cuts = cuts_from_dict({**with_cut(), "tool": {"from": "shop.csv", "number": 3}}, tmp_path / "cuts.toml")
+    assert cuts.tool is not None
+    assert (cuts.tool.kind, cuts.tool.diameter_mm, cuts.tool.flute_length_mm) == ("ball", 16.0, 18.0)

@@ -12,6 +12,8 @@ import pytest
 from twin.errors import JobError, MeshError, StockError
 from twin.moldmaking import MoldPlan, load_mold, mold_from_dict
 from twin.moldmaking.checks import undercut_warnings
+from twin.tool_library import LibraryTool
+from twin.tool_library.formats.plain_csv import csv_text
 from twin.workpiece.solids.from_mesh import Solid, solid, stl_bytes
 
 Change = Callable[[dict[str, Any]], object]
@@ -121,3 +123,23 @@ def test_the_former_name_of_the_raster_baseline_is_understood(job_tables: dict[s
     job_tables["compare"]["raster_baseline"] = True
     with pytest.raises(JobError, match=r"compare\.conventional: unknown key"):
         mold_from_dict(job_tables, mold_folder)
+
+
+def test_tools_can_come_from_a_library(job_tables: dict[str, Any], mold_folder: Path) -> None:
+    names = [f"tool {number}" for number in range(len(job_tables["tools"]))]
+    tools = [LibraryTool(name=name, **keys) for name, keys in zip(names, map(_sizes, job_tables["tools"]), strict=True)]
+    (mold_folder / "shop.csv").write_text(csv_text(tools))
+    own = [
+        {"from": "shop.csv", "name": name, "number": table["number"]}
+        for name, table in zip(names, job_tables["tools"], strict=True)
+    ]
+    found = mold_from_dict({**job_tables, "tools": own}, mold_folder)
+    assert [tool.diameter_mm for tool in found.tools] == [tool.diameter_mm for tool in tools]
+    own[0]["name"] = "no such tool"
+    with pytest.raises(JobError, match=r'tools\[0\]\.from = "shop.csv": .* no tool has the name "no such tool"'):
+        mold_from_dict({**job_tables, "tools": own}, mold_folder)
+
+
+def _sizes(table: dict[str, Any]) -> dict[str, Any]:
+    keys = ("kind", "diameter_mm", "corner_radius_mm", "teeth", "flute_length_mm")
+    return {key: table[key] for key in keys if key in table}

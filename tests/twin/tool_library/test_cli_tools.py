@@ -59,6 +59,8 @@ def test_json_has_the_sizes_of_the_chosen_tools(shop: Path, capsys: pytest.Captu
 
 def test_tools_written_as_toml_are_tables_of_a_job(shop: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["tools", "shop.tools", "tool.tbl", "-o", "tools.toml"]) == 0
+    written = "5 tools written to tools.toml, 2 of them as comments: they cannot be simulated\n"
+    assert capsys.readouterr().out == written
     text = Path("tools.toml").read_text(encoding="utf-8")
     tables = tomllib.loads(text)["tools"]
     assert [(table["number"], table["kind"]) for table in tables] == [(3, "ball"), (1, "ball"), (2, "flat")]

@@ -111,22 +111,3 @@ def test_the_header_has_the_sizes_their_origin_and_a_caution(tmp_path: Path) -> 
     watch = Watch()
     watch.take(header)
     assert "tool 3: helix_deg is not in the library, 0 is used" in [*watch._on_tools()]
-
-
-def test_test_cuts_and_mold_jobs_take_tools_of_a_library_too(tmp_path: Path) -> None:
-    from support.fuzz.targets import _cuts, _molds
-
-    from twin.identification.cuts.load import cuts_from_dict
-    from twin.moldmaking.load import mold_from_dict
-
-    job(tmp_path, {"from": "shop.json", "number": 3})
-    (tmp_path / "a.csv").write_text("Fx,Fy,Fz\n1,2,3\n")
-    (cuts,) = _cuts()
-    found = cuts_from_dict({**cuts, "tool": {"from": "shop.json", "number": 3}}, tmp_path / "cuts.toml")
-    assert found.tool is not None and (found.tool.kind, found.tool.diameter_mm) == ("ball", 6.0)
-    mold = tomllib.loads(_molds()[0].decode())
-    (tmp_path / "mold.stl").write_bytes(b"")
-    for table in mold["tools"]:
-        table.update({"from": "shop.json", "name": "no such tool"})
-    with pytest.raises(JobError, match=r'tools\[0\]\.from = "shop.json": .* no tool has the name "no such tool"'):
-        mold_from_dict(mold, tmp_path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from rich import box
@@ -36,6 +37,13 @@ def print_tools(console: Console, chosen: Iterable[tuple[ToolLibrary, Sequence[L
             console.print(Text(remark))
         if len(remarks) > _MOST_REMARKS:
             console.print(Text(f"and {plural(len(remarks) - _MOST_REMARKS, 'more remark')}; see --json"))
+
+
+def print_written(console: Console, path: Path, tools: Sequence[LibraryTool]) -> None:
+    """Print how many tools a file has, and how many of them are comments of a job's tables."""
+    comments = sum(not tool.simulated for tool in tools) if path.suffix.lower() == ".toml" else 0
+    rest = f", {comments} of them as comments: they cannot be simulated" if comments else ""
+    console.print(Text(f"{plural(len(tools), 'tool')} written to {path}{rest}"), soft_wrap=True)
 
 
 def _table(tools: Sequence[LibraryTool]) -> Table:

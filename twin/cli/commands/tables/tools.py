@@ -39,7 +39,7 @@ def tools(
     values that cannot be right; these are named and left out.
     """
     from twin.cli.console import print_json, results, warn
-    from twin.cli.show.tool_tables import print_tools, tools_object
+    from twin.cli.show.tool_tables import print_tools, print_written, tools_object
     from twin.errors import ToolLibraryError
     from twin.tool_library import read_tool_library
 
@@ -59,6 +59,8 @@ def tools(
         print_json(tools_object(chosen))
     elif output is None:
         print_tools(results(), chosen)
+    else:
+        print_written(results(), output, every)
     wrong = sum(bool(tool.warnings) for tool in every)
     if wrong:
         raise ToolLibraryError(f"values that cannot be right in {wrong} of {len(every)} tools; see the warnings")
