@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import platform
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import version
@@ -28,6 +29,7 @@ def run_header(
         stock_notes: what was assumed or mended in the file of the stock.
     """
     parameters = dict(_flat(job.model_dump(mode="json", exclude={"text", "path"}, by_alias=True)))
+    parameters = {key: _in_folder(text, _folder(job)) for key, text in parameters.items()}
     parameters |= {f"version.{name}": version(name) for name in _LIBRARIES}
     parameters |= {"version.python": platform.python_version(), "version.twin": __version__}
     parameters |= {f"stock.note[{index}]": note for index, note in enumerate(stock_notes)}
@@ -55,6 +57,17 @@ def _flat(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
             yield from _flat(inner, f"{path}[{index}]")
     elif value is not None:
         yield path, str(value)
+
+
+def _folder(job: Job) -> str:
+    """Folder of the job file, or of the program of a job that is in no file, with a separator at its end, as the job has it."""
+    file = job.path if job.path.is_file() else Path(job.program.file)
+    return "" if file.parent == Path() else f"{file.parent}{os.sep}"
+
+
+def _in_folder(text: str, folder: str) -> str:
+    """A text with the paths in a folder relative to it: runs are the same wherever the folder is."""
+    return text.replace(folder, "") if folder else text
 
 
 def _attachments(job: Job) -> Iterator[Attachment]:

@@ -52,6 +52,12 @@ def killed(tmp_path: Path) -> Path:
     return cut
 
 
+def test_settings_name_files_relative_to_the_job(replayed: twin.Run, job: Path) -> None:
+    parameters = replayed.header.parameters
+    assert (job.parent / parameters["program.file"]).is_file() and not Path(parameters["program.file"]).is_absolute()
+    assert not [key for key, text in parameters.items() if str(job.parent) in text]
+
+
 def assert_same(one: twin.Run, other: twin.Run) -> None:
     assert one.summary == other.summary
     assert one.events == other.events
