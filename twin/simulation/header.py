@@ -60,7 +60,7 @@ def _flat(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
 
 
 def _folder(job: Job) -> str:
-    """Folder of the job file, or of the program of a job that is in no file, with a separator at its end, as the job has it."""
+    """Folder of the job file, or of the program of a job in no file, as the job has it, with a separator at its end."""
     file = job.path if job.path.is_file() else Path(job.program.file)
     return "" if file.parent == Path() else f"{file.parent}{os.sep}"
 
