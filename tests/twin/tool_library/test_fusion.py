@@ -37,6 +37,11 @@ def test_a_tool_with_neck_shank_and_holder_becomes_a_table_of_the_job(tmp_path: 
     assert tool.warnings == () and tool.notes == ("helix angle: not stored in this format",)
 
 
+def test_a_left_hand_tool_is_noted(tmp_path: Path) -> None:
+    (tool,) = read(tmp_path, fusion_tool(HAND=False))
+    assert "left-hand tool: it cuts under M4" in tool.notes
+
+
 def test_the_packed_library_has_the_same_tools(tmp_path: Path) -> None:
     path = tmp_path / "library.tools"
     path.write_bytes(zipped(fusion_library(fusion_tool())))

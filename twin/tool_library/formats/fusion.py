@@ -64,6 +64,8 @@ def _tool(entry: Mapping[str, Any], source: str) -> RawTool:
     expressions, post = _table(entry, "expressions"), _table(entry, "post-process")
     fields = Fields({**_table(entry, "geometry"), **post}, unit)
     _read_sizes(fields, expressions, notes)
+    if _table(entry, "geometry").get("HAND") is False:
+        notes.append("left-hand tool: it cuts under M4")
     kind = kind_of_word(word)
     _read_taper(fields, expressions, kind, notes)
     tapered = entry.get("tapered-type")

@@ -1,10 +1,10 @@
-"""Tools as XML: manufacturers' data by DIN 4000, and the libraries of Creo and Vericut.
+"""Tools as XML: manufacturers' data by DIN 4000, and the libraries of Creo.
 
 DIN 4000-82 (milling cutters): A1 diameter, A5 neck diameter, B2 (or B6) flute length, B3 length to the shank, B5
 overall length, C3 shank diameter, F21 teeth, F3 and F4 direction and angle of the helix, G1 corner radius; decimal
 commas. Meanings were compared with data of several manufacturers; other parts of the standard are listed only.
 
-Creo and Vericut: a cutter of seven parameters; ``ECorner`` is the distance of the corner's centre from the axis.
+Creo: a cutter of seven parameters; ``ECorner`` is the distance of the corner's centre from the axis.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def xml_tools(data: bytes, path: Path) -> tuple[str, list[RawTool]]:
         return "DIN 4000", [*_din_tools(root, path)]
     if root.tag == "ToolLibrary":
         return "Creo", [*_apt_tools(root, path)]
-    expected = "expected Tool-Data (DIN 4000) or ToolLibrary (Creo, Vericut)"
+    expected = "expected Tool-Data (DIN 4000) or ToolLibrary (Creo)"
     raise ToolLibraryError(f"{path}: XML of the kind {root.tag[:60]!r} is not a tool library; {expected}")
 
 
