@@ -23,7 +23,8 @@ from pathlib import Path
 from PIL import Image
 from rerun.experimental import ViewerClient
 
-from twin.job import load_job
+from twin.drafting.draft import draft_job
+from twin.job import Job, load_job
 from twin.simulation.replay import Replay
 from twin.sinks.rerun.layout import TIME
 from twin.sinks.rerun.sink import RerunSink
@@ -32,6 +33,8 @@ ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "docs" / "pictures"
 #: Picture, and the machine time that it shows as a share of the whole.
 EXAMPLES = {"ball_slot": 0.8, "pocket": 0.33, "casting": 0.45}
+#: The picture of the NC program that the README replays without a job file.
+PROGRAMS = {"plate": 0.8}
 SIZE = (1600, 1000)
 #: Height of the viewer's own bar, which says nothing of a run.
 BAR = 37
@@ -72,7 +75,7 @@ def connected(port: int) -> ViewerClient:
 def make(name: str, at: float, folder: Path) -> None:
     """Replay an example and take its picture."""
     rrd = folder / f"{name}.rrd"
-    with Replay(load_job(ROOT / "examples" / name / "job.toml")) as replay, RerunSink(rrd=rrd) as sink:
+    with Replay(_job(name)) as replay, RerunSink(rrd=rrd) as sink:
         for record in replay:
             sink.write(record)
     with viewer() as client:
@@ -86,12 +89,20 @@ def make(name: str, at: float, folder: Path) -> None:
         plain.save(PICTURES / f"{name}.png", optimize=True)
 
 
+def _job(name: str) -> Job:
+    """The job of an example."""
+    if name in PROGRAMS:
+        return draft_job(ROOT / "examples" / "from_nc" / f"{name}.nc", material="Al7075-T6", angle_step_deg=4.0).job()
+    return load_job(ROOT / "examples" / name / "job.toml")
+
+
 def main() -> None:
     """Make the pictures named on the command line, or all."""
     PICTURES.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        for name in sys.argv[1:] or EXAMPLES:
-            make(name, EXAMPLES[name], Path(folder))
+        shares = EXAMPLES | PROGRAMS
+        for name in sys.argv[1:] or shares:
+            make(name, shares[name], Path(folder))
             print(PICTURES / f"{name}.png")
 
 

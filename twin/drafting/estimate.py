@@ -25,8 +25,8 @@ _STEP_S, _FORCED_STEP_S, _SAMPLE_S = 0.7e-3, 1.3e-3, 3e-6
 #: Computing time for each axial element of the edge and spindle angle of a step, s.
 _ELEMENT_S = 5e-8
 #: Bytes of a force sample, of a step, and of a cell of the surface as drawn: in the archive, and in a recording.
-_ARCHIVE_B = (62.0, 130.0, 70.0)
-_RECORDING_B = (75.0, 400.0, 90.0)
+_ARCHIVE_B = (58.0, 130.0, 70.0)
+_RECORDING_B = (72.0, 400.0, 80.0)
 #: Cells along the longest side of the stock as drawn.
 _CELLS = 200.0
 #: Memory of the program itself, and of a column of the slices without and with forces, bytes.
@@ -83,7 +83,7 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, *, forces: bool) -> Es
     steps = round(float((inside.length_mm * share).sum()) / fine.pitch_mm) + len(inside.tool)
     x, y, z = stock.size_mm.tolist()
     surface = 2.0 * (x * y + y * z + z * x)
-    cells = surface / (max(x, y, z) / _CELLS) ** 2
+    cells = surface / max(max(x, y, z) / _CELLS, fine.pitch_mm) ** 2
     depth = float(stock.high_mm[2] - inside.low_mm[:, 2].min(initial=stock.high_mm[2]))
     elements = depth / fine.axial_mm * 360.0 / fine.angle_deg
     step_s = _FORCED_STEP_S + _ELEMENT_S * elements if forces else _STEP_S

@@ -236,3 +236,13 @@ def test_a_run_without_forces_has_no_samples(tmp_path: Path) -> None:
     estimate = drafted(tmp_path).estimate
     assert estimate.samples == 0
     assert estimate.archive_bytes < drafted(tmp_path, material="Al7075-T6").estimate.archive_bytes
+
+
+def test_the_example_of_the_readme(tmp_path: Path) -> None:
+    draft = draft_job(Path(__file__).parents[3] / "examples" / "from_nc" / "plate.nc", material="Al7075-T6")
+    assert [(t.number, t.kind, t.diameter_mm, t.teeth) for t in draft.job().tools] == [
+        (1, "flat", 10.0, 4),
+        (2, "ball", 6.0, 2),
+    ]
+    assert draft.job().stock.box_mm.max == (58.0, 48.0, 0.0)  # type: ignore[union-attr]
+    assert not draft.warnings
