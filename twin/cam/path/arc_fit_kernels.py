@@ -142,6 +142,13 @@ def _longest_line(points: FloatArray, i: int, limits: Limits) -> int:
 
 
 @helper
+def _copy(arc: FloatArray, best: FloatArray) -> None:
+    """Copy an arc's numbers; an assignment of arrays takes seconds to compile."""
+    for k in range(len(arc)):
+        best[k] = arc[k]
+
+
+@helper
 def _longest_arc(points: FloatArray, i: int, limits: Limits, arc: FloatArray, best: FloatArray) -> int:
     """The last point of the longest arc from point i that fits, i without one; fills in the arc.
 
@@ -152,14 +159,14 @@ def _longest_arc(points: FloatArray, i: int, limits: Limits, arc: FloatArray, be
     n, end, step = len(points), i, 3
     while i + step < n and _arc_fits(points, i, i + step, limits, arc):
         end = i + step
-        best[:] = arc
+        _copy(arc, best)
         step *= 2
     bad = min(i + step, n)
     while end > i and bad - end > 1:
         middle = (bad + end) // 2
         if _arc_fits(points, i, middle, limits, arc):
             end = middle
-            best[:] = arc
+            _copy(arc, best)
         else:
             bad = middle
     return end
@@ -187,7 +194,7 @@ def fit_plane(points: FloatArray, limits: Limits, arcs: bool, ends: NDArray[np.i
             arc_end = _longest_arc(points, i, limits, arc, best)
             if arc_end > end + 1:
                 end = arc_end
-                fitted[pieces] = best
+                _copy(best, fitted[pieces])
         ends[pieces] = end
         pieces += 1
         i = end

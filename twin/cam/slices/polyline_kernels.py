@@ -49,7 +49,7 @@ def _with_corners(line: FloatArray, made: FloatArray) -> int:
                 if 0.0 < ahead < width:
                     made[count, 0], made[count, 1] = line[i - 1, 0] + ahead, line[i - 1, 1] + left * ahead
                     count += 1
-        made[count] = line[i]
+        made[count, 0], made[count, 1] = line[i, 0], line[i, 1]
         count += 1
     return count
 
@@ -66,7 +66,7 @@ def _with_walls(line: FloatArray, made: FloatArray) -> int:
                 made[count, 0] = line[i, 0] if down else line[i - 1, 0]
                 made[count, 1] = line[i - 1, 1] if down else line[i, 1]
                 count += 1
-        made[count] = line[i]
+        made[count, 0], made[count, 1] = line[i, 0], line[i, 1]
         count += 1
     return count
 

@@ -173,7 +173,8 @@ def own_page(store: CellStore, plane: int, column: int, tile: int) -> int:
     if not store.own_table[table[plane, column]]:
         if used[TABLES] >= len(page):
             return TABLES_FULL
-        page[used[TABLES]] = page[table[plane, column]]
+        for block in range(page.shape[1]):
+            page[used[TABLES], block] = page[table[plane, column], block]
         store.own_table[used[TABLES]] = True
         store.own[used[TABLES]] = False
         table[plane, column] = used[TABLES]
