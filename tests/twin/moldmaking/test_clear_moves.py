@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
@@ -122,12 +123,15 @@ def over(z: float, kind: MoveKind = MoveKind.RAPID) -> ToolPath:
     return ToolPath(moves=(before, *across, after), tool=TOOL)
 
 
-PIN = surface_of(np.concatenate((box((-10, -10, -1), (10, 10, 0)), box((-0.05, -0.05, 0), (0.05, 0.05, 6)))))
+@cache
+def pin() -> Surface:
+    """A plate with a pin upon it."""
+    return surface_of(np.concatenate((box((-10, -10, -1), (10, 10, 0)), box((-0.05, -0.05, 0), (0.05, 0.05, 6)))))
 
 
 @pytest.mark.parametrize("allowance", [0.0, 0.25])
 def test_a_rapid_through_a_pin_is_raised_by_the_clearance(allowance: float) -> None:
-    part = part_obstacle(PIN, TOOL, allowance)
+    part = part_obstacle(pin(), TOOL, allowance)
     path = with_clear_moves(over(4.0), OPTIONS, part)
     z = path.moves[2].start_mm[2]
     assert 6.5 + allowance <= z <= 7.1 + allowance
@@ -136,16 +140,16 @@ def test_a_rapid_through_a_pin_is_raised_by_the_clearance(allowance: float) -> N
 
 
 def test_a_link_through_a_pin_goes_over_it() -> None:
-    path = with_clear_moves(over(1.0, MoveKind.LINK), OPTIONS, part_obstacle(PIN, TOOL, 0.0))
+    path = with_clear_moves(over(1.0, MoveKind.LINK), OPTIONS, part_obstacle(pin(), TOOL, 0.0))
     (link,) = path.of_kind(MoveKind.LINK)
     assert link.feed_mm_min == 900.0
     assert 6.0 <= link.points_mm[:, 2].max() <= 6.01
-    assert deepest_mm(path, PIN, 0.0, MoveKind.LINK) <= ROUNDING
+    assert deepest_mm(path, pin(), 0.0, MoveKind.LINK) <= ROUNDING
 
 
 def test_a_clear_path_is_returned_as_is() -> None:
     path = over(6.001)
-    assert with_clear_moves(path, OPTIONS, part_obstacle(PIN, TOOL, 0.0)) is path
+    assert with_clear_moves(path, OPTIONS, part_obstacle(pin(), TOOL, 0.0)) is path
 
 
 def test_a_rapid_down_next_to_a_wall_of_the_stock_ends_above_it() -> None:
@@ -153,7 +157,7 @@ def test_a_rapid_down_next_to_a_wall_of_the_stock_ends_above_it() -> None:
     stock = Dexels((-10.0, -10.0), (10.0, 10.0), 0.4, 0.0, -5.0)
     stock.heights_mm[stock.x_mm > 8.15, :] = 5.0
     stock = Dexels((-10.0, -10.0), (10.0, 10.0), 0.4, stock.heights_mm, -5.0)
-    path = with_clear_moves(over(8.0), OPTIONS, part_obstacle(PIN, TOOL, 0.0), stock)
+    path = with_clear_moves(over(8.0), OPTIONS, part_obstacle(pin(), TOOL, 0.0), stock)
     down, plunge = path.moves[-3:-1]
     assert down.rapid and plunge.kind is MoveKind.PLUNGE and plunge.feed_mm_min == 1000.0
     assert down.end_mm[2] == plunge.start_mm[2] > 3.0
@@ -164,8 +168,8 @@ def test_a_rise_from_below_the_allowance_begins_at_feed() -> None:
     """A cut that is 3 um too close to a wall of 6 mm."""
     cut = Move(kind=MoveKind.CUT, points_mm=np.array([[-2.247, -5.0, 1.0], [-2.247, 0.0, 1.0]]), feed_mm_min=600.0)
     path = ToolPath(moves=(cut, *rapids(np.array([cut.end_mm, (-2.247, 0.0, 15.0)]))), tool=TOOL)
-    part = part_obstacle(PIN, TOOL, 0.2)
+    part = part_obstacle(pin(), TOOL, 0.2)
     first, retract, rise = with_clear_moves(path, OPTIONS, part).moves
     assert first is cut and (retract.kind, retract.feed_mm_min) == (MoveKind.RETRACT, 1000.0)
     assert rise.rapid and rise.end_mm[2] == 15.0 and 3.5 < rise.start_mm[2] < 6.2
-    assert deepest_mm(with_clear_moves(path, OPTIONS, part), PIN, 0.2, MoveKind.RAPID) <= ROUNDING
+    assert deepest_mm(with_clear_moves(path, OPTIONS, part), pin(), 0.2, MoveKind.RAPID) <= ROUNDING
