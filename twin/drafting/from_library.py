@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -35,7 +36,7 @@ def library_tools(
         states = stated.get(number, ToolStatement())
         tool = _pick(library, number, states, notes)
         if tool is not None and (tool.diameter_mm or states.diameter_mm) is not None:
-            found[number] = _drafted(number, tool, states, notes)
+            found[number] = _drafted(number, tool, states, notes, file.parent)
     return found
 
 
@@ -57,7 +58,7 @@ def _pick(library: ToolLibrary, number: int, states: ToolStatement, notes: Notes
     return library.find(number=number)
 
 
-def _drafted(number: int, tool: LibraryTool, states: ToolStatement, notes: Notes) -> DraftTool:
+def _drafted(number: int, tool: LibraryTool, states: ToolStatement, notes: Notes, folder: Path) -> DraftTool:
     notes.warnings += [f"T{number}: {text}" for text in tool.warnings]
     for note in tool.notes:
         notes.assume(f"T{number}", note, "the library")
@@ -83,7 +84,10 @@ def _drafted(number: int, tool: LibraryTool, states: ToolStatement, notes: Notes
         size = own.diameter_mm or 0.0
         notes.assume(f"T{number}", f"a cylinder of D{size:g} mm without forces", f"{tool.title}: {tool.obstacle}")
         own = replace(own, kind=tool.kind if tool.kind not in MILLS else "unknown")
-    return DraftTool(number=number, states=own, known=True, library=tool.as_job_table() if tool.simulated else None)
+    # the name of the file, not where a user keeps it: a run's archive holds the job
+    source = tool.source.removeprefix(f"{folder}{os.sep}")
+    table = {**tool.as_job_table(), "origin": f"{source}, {tool.title}"} if tool.simulated else None
+    return DraftTool(number=number, states=own, known=True, library=table)
 
 
 def _same(a: float | None, b: float | None) -> bool:

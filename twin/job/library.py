@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,10 +18,14 @@ _PLACEHOLDER = {"number": 1, "kind": "flat", "diameter_mm": 1.0, "teeth": 1, "fl
 
 
 class _Libraries:
-    """The libraries of a job, each read once."""
+    """The libraries of a job, each read once.
+
+    Attributes:
+        folder: folder to which their paths are relative.
+    """
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder
+        self.folder = folder
         self._read: dict[tuple[str, LibraryUnit], ToolLibrary] = {}
 
     def read(self, name: str, unit: LibraryUnit) -> ToolLibrary:
@@ -29,7 +34,7 @@ class _Libraries:
         from twin.tool_library import read_tool_library
 
         if (name, unit) not in self._read:
-            self._read[name, unit] = read_tool_library(self._folder / name, unit)
+            self._read[name, unit] = read_tool_library(self.folder / name, unit)
         return self._read[name, unit]
 
 
@@ -65,10 +70,11 @@ def _filled(table: Any, location: Location, libraries: _Libraries, problems: lis
     try:
         tool = libraries.read(str(name), unit).find(number, own_name or None)
         keys = _keys(tool, table)
+        source = tool.source.removeprefix(f"{libraries.folder}{os.sep}")
     except ToolLibraryError as error:
         problems.append(Problem(location, f".from = {show(str(name))}: {error}"))
         return {**_PLACEHOLDER, **table}
-    return {**keys, **_remarks(tool, table), **table}
+    return {**keys, "origin": f"{source}, {tool.title}", **_assumed(tool, table), **table}
 
 
 def _keys(tool: LibraryTool, own: Mapping[str, Any]) -> dict[str, Any]:
@@ -85,10 +91,10 @@ def _keys(tool: LibraryTool, own: Mapping[str, Any]) -> dict[str, Any]:
     return tool.job_keys(kind if isinstance(kind, str) else None)
 
 
-def _remarks(tool: LibraryTool, own: Mapping[str, Any]) -> dict[str, str]:
-    """The entry of the library that the sizes are from, and what was assumed of it."""
+def _assumed(tool: LibraryTool, own: Mapping[str, Any]) -> dict[str, str]:
+    """What was assumed of the library's entry, as a caution; empty for nothing."""
     assumed = [note for note in tool.notes if not note.startswith("helix angle")]
     if tool.helix_deg is None and "helix_deg" not in own:
         assumed.append("helix_deg is not in the library, 0 is used")
     assumed += tool.warnings
-    return {"origin": f"{tool.source}, {tool.title}", **({"caution": "; ".join(assumed)} if assumed else {})}
+    return {"caution": "; ".join(assumed)} if assumed else {}

@@ -171,6 +171,7 @@ def test_tools_of_a_library_win_over_comments(tmp_path: Path) -> None:
     tool = tool_of(draft)
     assert (tool["name"], tool["teeth"], tool["flute_length_mm"]) == ("cutter A", 3, 19.0)
     assert "helix 30 deg (T3: the library does not state it)" in draft.assumed
+    assert tool["origin"] == 'tools.csv:2, T3 "cutter A"'
     assert not draft.warnings
     other = drafted(tmp_path, tools=library(tmp_path, "3,cutter A,flat,10,3,19"))
     assert "the library has D10 mm" in other.warnings[0] and "comment D8 mm" in other.warnings[0]

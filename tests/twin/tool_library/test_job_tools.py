@@ -33,7 +33,7 @@ def test_a_tool_by_number_takes_all_sizes_of_the_library(tmp_path: Path) -> None
     (tool,) = job(tmp_path, {"from": "shop.json", "number": 3}).tools
     assert (tool.number, tool.name, tool.kind, tool.diameter_mm, tool.teeth) == (3, "6 mm ball", "ball", 6.0, 2)
     assert tool.shank is not None and tool.shank.diameter_mm == 5.8 and len(tool.holder) == 3
-    assert tool.origin == f'{tmp_path / "shop.json"}: data[0], T3 "6 mm ball"'
+    assert tool.origin == 'shop.json: data[0], T3 "6 mm ball"'
     assert tool.caution == "helix_deg is not in the library, 0 is used"
 
 
