@@ -92,7 +92,7 @@ def _keys(tool: LibraryTool, own: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _assumed(tool: LibraryTool, own: Mapping[str, Any]) -> dict[str, str]:
-    """What was assumed of the library's entry, as a caution; empty for nothing."""
+    """Assumptions on the library's entry, as a caution; empty for none."""
     assumed = [note for note in tool.notes if not note.startswith("helix angle")]
     if tool.helix_deg is None and "helix_deg" not in own:
         assumed.append("helix_deg is not in the library, 0 is used")
