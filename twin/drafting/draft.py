@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -106,6 +107,10 @@ def draft_job(
     return _Drafting(file, given, target).draft()
 
 
+#: Height of the machine's zero above the stock, where a program moves to it, mm.
+_ABOVE_MM = 100.0
+
+
 class _Drafting:
     """The steps of one draft."""
 
@@ -140,7 +145,7 @@ class _Drafting:
         doubts(cuts, tools, float(stock.high_mm[2]), self.notes)
         tables = [
             self._program_table(tool),
-            self._machine_table(cuts),
+            self._machine_table(cuts, float(stock.high_mm[2])),
             stock.table,
             *self._tool_tables(cuts, tools, float(stock.high_mm[2])),
             *self._cutting_tables(tools),
@@ -258,12 +263,16 @@ class _Drafting:
             table.add("m_codes", {str(code): "none" for code in self.given.m_codes})
         return table
 
-    def _machine_table(self, cuts: Cuts) -> DraftTable:
-        reason = "the program does not state where its work zeros are on the machine"
+    def _machine_table(self, cuts: Cuts, top_mm: float) -> DraftTable:
+        """Work offsets at 0, or where the program moves to the machine's zero, so that this is above the stock."""
+        reason, z = "the program does not state where its work zeros are on the machine", 0.0
+        if self.text.moves_in_machine_coordinates:
+            z = -float(math.ceil((max(top_mm, 0.0) + _ABOVE_MM) / 10.0) * 10.0)
+            reason += ", and moves in machine coordinates (G53), whose zero is taken above the stock"
         table = DraftTable(name="machine")
-        table.add("offsets", {wcs: [0.0, 0.0, 0.0] for wcs in cuts.offsets}, f"assumed: {reason}")
+        table.add("offsets", {wcs: [0.0, 0.0, z] for wcs in cuts.offsets}, f"assumed: {reason}")
         names = ", ".join(cuts.offsets)
-        self.notes.assume("machine", f"{names} at 0", reason)
+        self.notes.assume("machine", f"{names} at {f'Z{z:g}' if z else '0'}", reason)
         if len(cuts.offsets) > 1:
             self.notes.warnings.append(
                 f"the program uses {len(cuts.offsets)} work offsets ({names}), and all of them are taken at the same "

@@ -76,7 +76,7 @@ def top_of_cut(feed: Feed) -> Top:
     side = feed.only(feed.sideways)
     if not len(side.tool):
         return _top_of_holes(feed)
-    cutting = feed.only(feed.sideways & ~_entries(feed))
+    cutting = feed.only(feed.sideways & ~_entries(feed) & ~_links(feed))
     side = cutting if len(cutting.tool) else side
     plunges_mm = float(feed.start_mm[feed.first, 2].max()) if feed.first.any() else np.inf
     middle = 0.5 * (side.low_mm[:, 2] + side.high_mm[:, 2])
@@ -133,6 +133,14 @@ def _entries(feed: Feed) -> NDArray[np.bool_]:
     before = np.concatenate([[0], stops])[begun]
     inside: NDArray[np.bool_] = stops == before
     return inside
+
+
+def _links(feed: Feed) -> NDArray[np.bool_]:
+    """Motions between a retract at feed and the next plunge: some posts write rapids as feed motions."""
+    up = ~feed.sideways & (feed.end_mm[:, 2] > feed.start_mm[:, 2])
+    last = np.maximum.accumulate(np.where(~feed.sideways | feed.first, np.arange(len(up)), 0))
+    links: NDArray[np.bool_] = up[last]
+    return links
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

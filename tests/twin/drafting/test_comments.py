@@ -39,6 +39,7 @@ def test_the_example_of_each_post_is_read(post: ToolPost) -> None:
         ("V-Bit {60 deg 12.7 mm}", "mm", {"kind": "chamfer mill", "diameter_mm": 12.7, "angle_deg": 30.0}),
         ("3FL 6mm LOC 13", "mm", {"kind": None, "diameter_mm": 6.0, "teeth": 3, "flute_length_mm": 13.0}),
         ('O Flute 1/4"', "mm", {"kind": "flat", "diameter_mm": 6.35, "teeth": 1}),
+        ("End Mill - Diameter 0.25 inches - Collet .25", "mm", {"kind": "flat", "diameter_mm": 6.35}),
         ("POCKET 3", "mm", {"kind": None, "diameter_mm": None}),
     ],
 )
@@ -110,6 +111,10 @@ def test_comments_belong_to_the_tool_change_they_are_at() -> None:
         (
             ["the part is cut from a 100x90x50mm", "block with the zero point at the center top of the block"],
             *("inch", (100, 90, 50), (-50, -45, -50)),
+        ),
+        (
+            ["Material Setup", "X Min = 0.000   Y Min = 0.000  Z Min = -38", "X Max = 80  Y Max = 300  Z Max = 0.000"],
+            *("mm", (80, 300, 38), (0, 0, -38)),
         ),
         (["STOCK: 4.0 X 3.0 X 1.0 INCH"], "mm", (101.6, 76.2, 25.4), (None, None, None)),
     ],

@@ -14,6 +14,7 @@ from gcode.errors import GcodeError
 from twin.drafting.draft import JobDraft, draft_job
 from twin.errors import MaterialError, ReplayError, SettingsError, ToolLibraryError
 from twin.job import job_from_text
+from twin.simulation.replay import Replay
 
 
 def drafted(folder: Path, text: str = SLOT, **values: Any) -> JobDraft:
@@ -116,6 +117,14 @@ def test_work_offsets_that_are_used(tmp_path: Path) -> None:
     draft = drafted(tmp_path, changed(("X40. F640.", "X40. F640.\nG56 X0.")))
     assert "2 work offsets (G54, G56)" in draft.warnings[0]
     draft.job()
+
+
+def test_the_machine_zero_of_g53_is_above_the_stock(tmp_path: Path) -> None:
+    draft = drafted(tmp_path, changed(("G28 G91 Z0.\nG90\n", "G53 G0 Z-5.\n")))
+    assert draft.job().machine.offsets == {"G54": (0.0, 0.0, -100.0)}
+    assert "G54 at Z-100 (machine: the program does not state" in "\n".join(draft.assumed)
+    with Replay(draft.job(), preview=False) as replay:
+        assert not [record for record in replay if isinstance(record, twin.Collision)]
 
 
 def test_offsets_with_other_numbers_than_the_tool_have_rows(tmp_path: Path) -> None:

@@ -38,6 +38,8 @@ def levels(*heights: float) -> str:
         # a rapid down next to the stock, and a zero far above it
         ("G0 X-9. Z-3.\nG1 X50. F300.\n", 0.0),
         ("G0 Z-60.\nG1 Z-70. F300.\nX50.\n", -69.0),
+        # rapids at a clearance height written as feed motions
+        ("G0 Z5.\n" + "".join(f"G1 Z-2. F100.\nX{40 * (k + 1)}.\nZ5.\nY{9 * k}.\n" for k in range(4)), 0.0),
         # facing at Z0: some material is above it
         ("G0 Z5.\nG1 Z0. F100.\nX50. F300.\n", 1.0),
         ("G0 Z0.4\nG1 Z0. F100.\nX50. F300.\n", 0.4),

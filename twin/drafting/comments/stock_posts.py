@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from twin.drafting.comments.program_text import Comment, Unit
@@ -16,6 +16,8 @@ _CORNER = re.compile(rf"STOCK(MIN|MAX)\s*:\s*{_N}{_U}\s*,\s*{_N}{_U}\s*,\s*{_N}{
 _VECTRIC = re.compile(
     rf"^(?:MATERIAL\s+SIZE\s*:?\s*)?X\s*=\s*{_N}\s*,\s*Y\s*=\s*{_N}\s*,\s*Z\s*=\s*{_N}\s*$", re.IGNORECASE
 )
+_LIMITS = re.compile(rf"^X\s+(MIN|MAX)\s*=\s*{_N}\s*,?\s*Y\s+\1\s*=\s*{_N}\s*,?\s*Z\s+\1\s*=\s*{_N}\s*$", re.IGNORECASE)
+_LIMITS_HEAD = re.compile(r"^MATERIAL\s+(?:SETUP|SIZE)", re.IGNORECASE)
 _VECTRIC_HEAD = re.compile(r"^MATERIAL\s+SIZE", re.IGNORECASE)
 _VECTRIC_Z = re.compile(r"Z\s+ORIGIN\s+FOR\s+MATERIAL\s*=\s*(.*)", re.IGNORECASE)
 _VECTRIC_XY = re.compile(r"XY\s+ORIGIN\s+FOR\s+MATERIAL\s*=\s*(.*)", re.IGNORECASE)
@@ -51,7 +53,7 @@ def stock_comment(comments: Sequence[Comment], unit: Unit) -> StockStatement | N
     Args:
         unit: of the program.
     """
-    for read in (_carbide_block, _carbide_corners, _vectric, _in_words):
+    for read in (_carbide_block, _carbide_corners, _vectric, _vectric_limits, _in_words):
         found = read(comments, unit)
         if found is not None and min(found.size_mm) > 0.0:
             return found
@@ -83,11 +85,7 @@ def _carbide_corners(comments: Sequence[Comment], unit: Unit) -> StockStatement 
             groups = match.groups()
             corners[groups[0].upper()] = _lengths(groups[1::2], groups[2::2], unit)
             line = comment.line
-    if len(corners) < 2:
-        return None
-    low, high = corners["MIN"], corners["MAX"]
-    size = (high[0] - low[0], high[1] - low[1], high[2] - low[2])
-    return StockStatement(size_mm=size, low_mm=low, line=line, post="Carbide Create")
+    return _between(corners, line, "Carbide Create")
 
 
 def _vectric(comments: Sequence[Comment], unit: Unit) -> StockStatement | None:
@@ -104,6 +102,28 @@ def _vectric(comments: Sequence[Comment], unit: Unit) -> StockStatement | None:
         low_x, low_y = _corner(xy or "", size)
         return StockStatement(size_mm=size, low_mm=(low_x, low_y, low_z), line=comment.line, post="Vectric")
     return None
+
+
+def _vectric_limits(comments: Sequence[Comment], unit: Unit) -> StockStatement | None:
+    """Vectric, by limits: ``X Min = 0 Y Min = 0 Z Min = -38.1`` and the same with Max, after a heading."""
+    heads = [comment.line for comment in comments if _LIMITS_HEAD.search(comment.text)]
+    corners: dict[str, tuple[float, float, float]] = {}
+    line = 0
+    for comment in comments:
+        match = _LIMITS.search(comment.text)
+        if match is not None and any(0 <= comment.line - head <= _NEAR_LINES for head in heads):
+            corners[match[1].upper()] = _lengths(match.groups()[1:], (None,) * 3, unit)
+            line = comment.line
+    return _between(corners, line, "Vectric")
+
+
+def _between(corners: Mapping[str, tuple[float, float, float]], line: int, post: str) -> StockStatement | None:
+    """The box between two corners, None where one is missing."""
+    if len(corners) < 2:
+        return None
+    low, high = corners["MIN"], corners["MAX"]
+    size = (high[0] - low[0], high[1] - low[1], high[2] - low[2])
+    return StockStatement(size_mm=size, low_mm=low, line=line, post=post)
 
 
 def _in_words(comments: Sequence[Comment], unit: Unit) -> StockStatement | None:

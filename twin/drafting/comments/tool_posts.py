@@ -216,7 +216,7 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
     ),
     ToolPost(
         post="Vectric (tool list)",
-        pattern=r"^T?(?P<number>\d+)\s*=\s*(?P<text>.*\{.*\}.*)$",
+        pattern=r"^T?(?P<number>\d+)\s*=\s*(?P<text>[A-Z].*(?:\{.*\}|\bDIAM?).*)$",
         example="5 = End Mill {0.2500 inch} UpDown",
         states={"number": 5, "kind": "flat", "diameter_mm": 6.35, "name": "End Mill {0.2500 inch} UpDown"},
     ),
