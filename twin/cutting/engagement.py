@@ -19,6 +19,7 @@ from twin.arrays import FloatArray
 from twin.cutting import engagement_kernels as kernels
 from twin.cutting.edge_arrays import EdgeArrays, RowAngles
 from twin.motion.sweep import SweptVolume
+from twin.motion.swept_kernels import Fronts
 from twin.record import Engagement
 from twin.tolerance import Tolerance
 from twin.tools.edges import CuttingEdges, meridian
@@ -214,7 +215,8 @@ class Engager:
             workpiece.count_votes(points, self._enough, votes)
         inside = votes >= self._enough
         if len(pending):
-            pending.clear(points, inside, self._tolerance.depth_mm, at.waiting[steps])
+            fronts = Fronts(self._shape.meridian, at.tip_mm, steps)
+            pending.clear(points, inside, self._tolerance.depth_mm, at.waiting[steps], fronts)
         return np.asarray(inside)
 
     def _boundaries(
@@ -249,7 +251,7 @@ class Engager:
         """Where, from 0 to 1, the material ends between the two neighbours of each boundary in ``found``."""
         low, high = np.zeros(len(found)), np.ones(len(found))
         points = np.empty((len(found), 3))
-        first = status[found[:, 0], found[:, 1], found[:, 2]] == 1
+        first, steps = status[found[:, 0], found[:, 1], found[:, 2]] == 1, np.ascontiguousarray(found[:, 0])
         for _ in range(_HALVINGS if len(found) else 0):
             part = 0.5 * (low + high)
             on = meridian(self._shape, self._along(found[:split], part[:split]))
@@ -262,7 +264,7 @@ class Engager:
                 self._edge_arrays,
                 points,
             )
-            kernels.narrow(self._in_material(points, found[:, 0], at, workpiece, pending), first, low, high)
+            kernels.narrow(self._in_material(points, steps, at, workpiece, pending), first, low, high)
         return 0.5 * (low + high)
 
     def _summaries(

@@ -12,11 +12,14 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import NO_TOPS, Strips, Tops
 from twin.motion.section_kernels import Planes, section_nodes
-from twin.motion.swept_kernels import BodyShape, Motion, Sweeps, outside_sweeps
+from twin.motion.swept_kernels import BodyShape, Fronts, Motion, Sweeps, outside_sweeps
+from twin.tools.meridian import Meridian
 from twin.tools.shape import ToolShape
 
 #: Order of the coordinates (normal, u, v) of each slice family.
 _ORDER = ((0, 1, 2), (1, 0, 2), (2, 0, 1))
+#: No tool on whose surface points lie.
+ANYWHERE = Fronts(Meridian(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), np.zeros((0, 3)), np.zeros(0, dtype=np.int32))
 _EMPTY = Strips(0, np.zeros(1, dtype=np.int64), np.zeros((0, 3)), np.zeros(0, dtype=np.bool_))
 
 
@@ -154,13 +157,18 @@ class Sweep:
 
 
 class SweptVolume:
-    """The union of several sweeps, ready for tests of many points."""
+    """The union of several sweeps, ready for tests of many points.
 
-    def __init__(self, sweeps: Sequence[Sweep]) -> None:
+    Args:
+        behind_mm: see `Sweeps.behind`; None for bodies of any tools.
+    """
+
+    def __init__(self, sweeps: Sequence[Sweep], behind_mm: Sequence[float] | None = None) -> None:
         self._sweeps = Sweeps(
             bodies=np.array([(*s.body.shape.meridian, s.body.shape.drop) for s in sweeps]),
             starts=np.array([s.start_mm for s in sweeps]),
             moves=np.array([s.end_mm - s.start_mm for s in sweeps]),
+            behind=np.full(len(sweeps), math.inf) if behind_mm is None else np.array(behind_mm, dtype=np.float64),
         )
 
     def __len__(self) -> int:
@@ -172,13 +180,15 @@ class SweptVolume:
         in_material: NDArray[np.bool_],
         depth_mm: float,
         counts: NDArray[np.int64] | None = None,
+        fronts: Fronts = ANYWHERE,
     ) -> None:
         """Clear the flags of the points that lie deeper than ``depth_mm`` inside one of the sweeps, in place.
 
         Args:
             counts: shape (n,), how many of the sweeps, from the first, count for each point; None for all.
+            fronts: the tool on whose surface the points lie, where that is known.
         """
         if len(self):
             if counts is None:
                 counts = np.full(len(points_mm), len(self), dtype=np.int64)
-            outside_sweeps(points_mm, in_material, counts, self._sweeps, depth_mm)
+            outside_sweeps(points_mm, in_material, counts, self._sweeps, depth_mm, fronts)

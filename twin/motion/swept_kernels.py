@@ -20,6 +20,8 @@ from twin.tools.meridian_kernels import is_ball, is_flat, profile_height, profil
 
 _GOLDEN = 0.6180339887498949
 _SEARCH_STEPS = 42
+#: A point nearer to the axis than this part of the flat bottom's radius is on it.
+_ON_BOTTOM = 1.0 - 1e-12
 _RADIUS = Meridian._fields.index("radius")
 
 
@@ -345,11 +347,28 @@ class Sweeps(NamedTuple):
     Attributes:
         bodies: shape (m, 8), the numbers of each `BodyShape` in their order.
         starts, moves: shape (m, 3), start and motion of the tool tip, mm.
+        behind: shape (m,), how far a whole sweep must lie behind the tangent plane of a tool's surface for none of it
+            to reach the tangent point, mm; inf where bodies are those of another tool.
     """
 
     bodies: FloatArray
     starts: FloatArray
     moves: FloatArray
+    behind: FloatArray
+
+
+class Fronts(NamedTuple):
+    """Points on the surface of a tool at several positions.
+
+    Attributes:
+        tool: the tool's shape, as it is given, heights from its tip.
+        tips: shape (steps, 3), positions, mm.
+        steps: shape (n,), the position to which each point belongs.
+    """
+
+    tool: Meridian
+    tips: FloatArray
+    steps: NDArray[np.int32]
 
 
 @helper
@@ -363,27 +382,73 @@ def _body_of(bodies: FloatArray, j: int) -> BodyShape:
 
 @njit
 def outside_sweeps(
-    points: FloatArray, candidates: NDArray[np.bool_], counts: NDArray[np.int64], sweeps: Sweeps, depth: float
+    points: FloatArray,
+    candidates: NDArray[np.bool_],
+    counts: NDArray[np.int64],
+    sweeps: Sweeps,
+    depth: float,
+    fronts: Fronts,
 ) -> None:
     """Clear the candidates that lie deeper than ``depth`` inside one of several swept bodies.
+
+    A body that lies behind the plane that touches a tool at a point of its surface cannot hold that point, so most
+    earlier positions of the same tool need no closer look.
 
     Args:
         points: shape (n, 3), mm.
         candidates: shape (n,), changed in place.
         counts: shape (n,), how many of the sweeps, from the first, count for each point.
+        fronts: the tool on whose surface the points lie; without steps for points anywhere.
     """
-    bodies, starts, moves = sweeps.bodies, sweeps.starts, sweeps.moves
+    bodies, starts, moves, behind = sweeps.bodies, sweeps.starts, sweeps.moves, sweeps.behind
+    on_tool = len(fronts.steps) > 0
     for i in range(len(points)):
         if not candidates[i]:
             continue
         x = points[i, 0]
         y = points[i, 1]
         z = points[i, 2]
+        touching = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        if on_tool:
+            touching = _tangent_plane(fronts, i, x, y, z)
         for j in range(counts[i] - 1, -1, -1):
+            if on_tool and _is_behind(touching, starts, moves, j, -behind[j]):
+                continue
             motion = Motion(starts[j, 0], moves[j, 0], starts[j, 1], moves[j, 1], starts[j, 2], moves[j, 2])
             if _in_box(motion, bodies[j, _RADIUS], x, y, z) and _inside(_body_of(bodies, j), motion, depth, x, y, z):
                 candidates[i] = False
                 break
+
+
+@helper
+def _tangent_plane(fronts: Fronts, i: int, x: float, y: float, z: float) -> Motion:
+    """The tool tip (w, u, v) of a point on the tool's surface, and the outward normal (dw, du, dv) there."""
+    tips, tool, s = fronts.tips, fronts.tool, fronts.steps[i]
+    east, north = x - tips[s, 0], y - tips[s, 1]
+    rho = math.hypot(east, north)
+    if rho < tool.disc * _ON_BOTTOM:
+        sine, cosine = 0.0, 1.0
+    elif z - tips[s, 2] < tool.arc_height:
+        sine = min(1.0, max(0.0, rho - tool.disc) / tool.corner)
+        cosine = math.sqrt(1.0 - sine * sine)
+    else:
+        sine = 1.0 / math.sqrt(1.0 + tool.tangent * tool.tangent)
+        cosine = tool.tangent * sine
+    if rho == 0.0:
+        return Motion(tips[s, 0], 0.0, tips[s, 1], 0.0, tips[s, 2], -cosine)
+    return Motion(tips[s, 0], sine * east / rho, tips[s, 1], sine * north / rho, tips[s, 2], -cosine)
+
+
+@helper
+def _is_behind(touching: Motion, starts: FloatArray, moves: FloatArray, j: int, most: float) -> bool:
+    """Whether the tip of a sweep is at its start and its end no more than ``most`` before the tip of a tangent plane."""
+    at = (
+        (starts[j, 0] - touching.w) * touching.dw
+        + (starts[j, 1] - touching.u) * touching.du
+        + (starts[j, 2] - touching.v) * touching.dv
+    )
+    along = moves[j, 0] * touching.dw + moves[j, 1] * touching.du + moves[j, 2] * touching.dv
+    return at < most and at + along < most
 
 
 @helper

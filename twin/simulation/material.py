@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -23,6 +25,9 @@ PENDING_SWEEPS = 48
 TOGETHER = 8
 #: A sweep this near to a motion's line lies on it, mm.
 SAME_LINE_MM = 1e-9
+#: A sweep of the tool itself this many chord deviations behind a tangent plane does not reach it: it has been enlarged
+#: by one.
+_BEHIND_CHORDS = 1.1
 
 #: Lower and upper corner, both of shape (3,).
 Box: TypeAlias = tuple[FloatArray, FloatArray]
@@ -64,6 +69,7 @@ class Material:
         self._removal = Removal(workpiece, tolerance.chord_mm, threads)
         self._waiting: deque[tuple[Sweep, int]] = deque()
         self._window_mm = PENDING_PITCHES * float(np.max(workpiece.pitch_mm))
+        self._behind_mm = _BEHIND_CHORDS * tolerance.chord_mm
         self.removed_mm3: dict[int, float] = {}
         self._changed: list[Box] = []
 
@@ -78,7 +84,38 @@ class Material:
             start_mm: tool tip at the start of a straight motion, shape (3,).
             feed: unit vector along it, shape (3,).
         """
-        return SweptVolume([sweep for sweep, by in self._waiting if by != tool or not _behind(sweep, start_mm, feed)])
+        return self._volume([w for w in self._waiting if w[1] != tool or not _behind(w[0], start_mm, feed)], tool)
+
+    def pending_chords(self, tool: ToolSetup, corners_mm: FloatArray) -> SweptVolume:
+        """Sweeps that are not yet subtracted from the slices, and after them those of chords that come next.
+
+        Args:
+            corners_mm: shape (n + 1, 3), the ends of n chords, of which the last needs no sweep.
+        """
+        chords = [(Sweep(tool.cutter, a, b), tool.number) for a, b in pairwise(corners_mm[:-1])]
+        return self._volume([*self._waiting, *chords], tool.number)
+
+    def _volume(self, sweeps: Sequence[tuple[Sweep, int]], tool: int) -> SweptVolume:
+        behind_mm = [self._behind_mm if by == tool else math.inf for _, by in sweeps]
+        return SweptVolume([sweep for sweep, _ in sweeps], behind_mm)
+
+    @property
+    def waiting(self) -> int:
+        """How many sweeps are not yet subtracted from the slices."""
+        return len(self._waiting)
+
+    def until_subtracted(self, lengths_mm: Sequence[float]) -> int:
+        """How many of the next feed motions find the slices as they are now; at least 1.
+
+        Args:
+            lengths_mm: of the next motions.
+        """
+        waiting = [sweep.length_mm for sweep, _ in self._waiting]
+        for count, length_mm in enumerate(lengths_mm, start=1):
+            waiting.append(length_mm)
+            if self._due(waiting):
+                return count
+        return max(1, len(lengths_mm))
 
     def near(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> bool:
         """Whether the box of a motion of any of a tool's bodies meets the stock's box."""
@@ -124,15 +161,22 @@ class Material:
 
     def _wait(self, sweep: Sweep, tool: int) -> None:
         self._waiting.append((sweep, tool))
-        newer = sum(s.length_mm for s, _ in self._waiting) - self._waiting[0][0].length_mm
-        done = 0
-        while len(self._waiting) - done > 1 and (
-            newer >= self._window_mm or len(self._waiting) - done > PENDING_SWEEPS
-        ):
-            done += 1
-            newer -= self._waiting[done][0].length_mm
-        if done >= min(TOGETHER, len(self._waiting) - 1):
+        done = self._due([s.length_mm for s, _ in self._waiting])
+        if done:
             self._subtract(done)
+
+    def _due(self, lengths_mm: Sequence[float]) -> int:
+        """How many sweeps, of those that wait, are to be subtracted now; 0 while they are too few.
+
+        Args:
+            lengths_mm: of the sweeps that wait.
+        """
+        count, done = len(lengths_mm), 0
+        newer = sum(lengths_mm) - lengths_mm[0]
+        while count - done > 1 and (newer >= self._window_mm or count - done > PENDING_SWEEPS):
+            done += 1
+            newer -= lengths_mm[done]
+        return done if done >= min(TOGETHER, count - 1) else 0
 
     def flush(self) -> None:
         """Subtract everything that waits."""

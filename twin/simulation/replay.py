@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Iterator
-from itertools import islice, pairwise
+from collections.abc import Iterator
+from itertools import pairwise
 from types import TracebackType
 from typing import Self
 
@@ -18,26 +18,19 @@ import numpy as np
 
 from gcode.events import Event
 from twin.arrays import FloatArray
-from twin.cutting.engagement import Positions
-from twin.errors import ReplayError
 from twin.job import Job
 from twin.motion.path import Move
-from twin.motion.sweep import SweptVolume
-from twin.record import Record, RunSummary, Step
+from twin.record import Record, RunSummary
 from twin.simulation.clock import Turned
 from twin.simulation.contacts import Contacts, box_of, forbidden
 from twin.simulation.preview import Piece
 from twin.simulation.setup import Setup, prepare
 from twin.simulation.short_motions import Joined, joined
-from twin.simulation.solve import Solved, StepSolver, one_ahead
+from twin.simulation.solve import Solved
+from twin.simulation.steps import chord_groups, chord_steps, chords_are_steps, piece_steps, positions
 from twin.simulation.tools import ToolSetup
 from twin.workpiece.to_mesh import SurfaceMesh, surface_mesh
 from twin.workpiece.trislice import TriSlices
-
-#: Steps of a motion that are solved together, whatever the number of threads.
-_STEPS_TOGETHER = 64
-#: Most steps of one motion, and most force samples of one step and of steps that are solved together.
-_MOST_STEPS, _MOST_SAMPLES, _SAMPLES_TOGETHER = 10_000_000, 5_000_000, 1_000_000
 
 
 def replayed(setup: Setup) -> Iterator[Record]:
@@ -90,7 +83,7 @@ def _joined_records(short: Joined, tool: ToolSetup, setup: Setup) -> Iterator[Re
     ends = np.array([whole.start_mm, whole.end_mm])
     feed = (whole.end_mm - whole.start_mm) / whole.length_mm
     pending = setup.material.pending(tool.number, whole.start_mm, feed)
-    at = _positions(whole, tool, ends, feed, pending)
+    at = positions(whole, tool, ends, feed, pending)
     angles = np.concatenate([angle for _, angle in turned])
     (solved,) = setup.solver.solve(tool, at, [angles], np.array([whole.spindle_rpm]), pending)()
     first = 0
@@ -106,18 +99,6 @@ def _joined_records(short: Joined, tool: ToolSetup, setup: Setup) -> Iterator[Re
         first = last
 
 
-def _positions(move: Move, tool: ToolSetup, ends: FloatArray, feed: FloatArray, pending: SweptVolume) -> Positions:
-    """The middles of steps whose ends are given, shape (n + 1, 3)."""
-    n = len(ends) - 1
-    return Positions(
-        0.5 * (ends[:-1] + ends[1:]),
-        np.repeat(feed[None, :], n, axis=0),
-        np.full(n, move.feed_mm_min / 60.0),
-        np.full(n, move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)),
-        np.full(n, len(pending), dtype=np.int64),
-    )
-
-
 def cut(move: Move, setup: Setup) -> Iterator[Record]:
     """Step a motion: engagement and forces at each step, then its material removed, then its collisions."""
     tool, material, recorder = setup.tools.get(move.tool), setup.material, setup.recorder
@@ -127,81 +108,40 @@ def cut(move: Move, setup: Setup) -> Iterator[Record]:
         return
     setup.starts.check(tool, move, material)
     contacts = Contacts()
-    for start, end, duration_s in _straight(move, setup.step_mm, setup.tolerance.chord_mm):
-        begun_s = recorder.t_s
-        for piece in setup.preview.parts(start, end, duration_s):
-            yield from _steps(move, piece, tool, setup)
-            contacts.add(material.cut(tool, *piece[:2], forbidden(move)), begun_s, start)
-            yield from setup.preview.frame(material, recorder.t_s)
-        contacts.add(material.touches(tool, start, end), begun_s, start)
+    pieces = _straight(move, setup.step_mm, setup.tolerance.chord_mm)
+    if move.arc is not None and forbidden(move) is None and chords_are_steps(move, setup):
+        yield from _cut_chords(move, pieces, tool, setup, contacts)
+    else:
+        yield from _cut_pieces(move, pieces, tool, setup, contacts)
     yield from recorder.collisions(contacts.found(material.contact_mm3), move)
 
 
-def _steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iterator[Step]:
-    """The steps of one straight piece: those of a feed motion are solved at their middles, many together."""
-    start, end, duration_s = piece
-    if forbidden(move) is not None or not np.any(end != start):
-        yield setup.recorder.air_step(move, start, end, duration_s)
-        return
-    along = end - start
-    length = float(np.linalg.norm(along))
-    count = max(1, math.ceil(length / setup.step_mm * (1.0 - 1e-9)))
-    step_s = duration_s / count
-    per_step = setup.recorder.samples_in(step_s, move.spindle_rpm)
-    _refuse_endless(move, count, per_step, setup)
-    together = max(1, min(_STEPS_TOGETHER, int(_SAMPLES_TOGETHER / max(1.0, per_step))))
-    ends = start + along * (np.arange(count + 1) / count)[:, None]
-    pending = setup.material.pending(tool.number, start, along / length)
-    turns = setup.recorder.clock.turns(setup.recorder.t_s, step_s, move.spindle_rpm)
-    begun = _begun(move, tool, ends, along / length, pending, turns, setup.solver, together)
-    for first, turned, answer in one_ahead(begun):
-        for i, (samples, solved) in enumerate(zip(turned, answer(), strict=True), start=first):
-            yield setup.recorder.step(move, ends[i], ends[i + 1], step_s, samples, solved)
+def _cut_pieces(
+    move: Move, pieces: Iterator[Piece], tool: ToolSetup, setup: Setup, contacts: Contacts
+) -> Iterator[Record]:
+    """Straight pieces of a motion, each with its own steps."""
+    material, recorder = setup.material, setup.recorder
+    for start, end, duration_s in pieces:
+        begun_s = recorder.t_s
+        for piece in setup.preview.parts(start, end, duration_s):
+            yield from piece_steps(move, piece, tool, setup)
+            contacts.add(material.cut(tool, *piece[:2], forbidden(move)), begun_s, start)
+            yield from setup.preview.frame(material, recorder.t_s)
+        contacts.add(material.touches(tool, start, end), begun_s, start)
 
 
-def _refuse_endless(move: Move, steps: int, samples: float, setup: Setup) -> None:
-    """Refuses a motion with far too many steps, or steps with far too many samples: a number must be wrong."""
-    at = f"{setup.program}:{move.nc_line}"
-    if steps > _MOST_STEPS:
-        raise ReplayError(
-            f"{at}: a motion of {steps:.3g} steps; expected at most {_MOST_STEPS:g}, a larger simulation.step_mm"
-        )
-    if samples > _MOST_SAMPLES:
-        raise ReplayError(
-            f"{at}: {samples:.3g} force samples in one step at F{move.feed_mm_min:g} S{abs(move.spindle_rpm):g}; "
-            f"expected at most {_MOST_SAMPLES:g}, a higher feed or a larger simulation.angle_step_deg"
-        )
-
-
-def _begun(
-    move: Move,
-    tool: ToolSetup,
-    ends: FloatArray,
-    feed: FloatArray,
-    pending: SweptVolume,
-    turns: Iterator[Turned],
-    solver: StepSolver,
-    together: int,
-) -> Iterator[tuple[int, list[Turned], Callable[[], list[Solved]]]]:
-    """Begin to solve the steps of a line, many together.
-
-    Args:
-        ends: shape (n + 1, 3), the ends of n steps.
-        feed: shape (3,), unit vector along them.
-        pending: sweeps that are not yet subtracted from the slices.
-        turns: times and spindle angles of each step's samples.
-        together: how many steps are solved together.
-
-    Yields:
-        Number of the first step, the samples of each, and a function that waits for the answer.
-    """
-    for first in range(0, len(ends) - 1, together):
-        part = ends[first : first + together + 1]
-        n = len(part) - 1
-        turned = list(islice(turns, n))
-        at = _positions(move, tool, part, feed, pending)
-        rpm = np.full(n, move.spindle_rpm)
-        yield first, turned, solver.solve(tool, at, [angles for _, angles in turned], rpm, pending)
+def _cut_chords(
+    move: Move, pieces: Iterator[Piece], tool: ToolSetup, setup: Setup, contacts: Contacts
+) -> Iterator[Record]:
+    """Chords of an arc, each a step; steps are solved together until slices change."""
+    material, recorder = setup.material, setup.recorder
+    for chords in chord_groups(move, pieces, setup):
+        steps = chord_steps(move, chords, tool, setup)
+        for (start, end, _), step in zip(chords, steps, strict=True):
+            yield step
+            contacts.add(material.cut(tool, start, end, None), step.t_s, start)
+            yield from setup.preview.frame(material, recorder.t_s)
+            contacts.add(material.touches(tool, start, end), step.t_s, start)
 
 
 def _straight(move: Move, step_mm: float, chord_mm: float) -> Iterator[Piece]:

@@ -1,0 +1,160 @@
+"""Steps of motions: their positions, and engagement and forces of many together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
+
+import numpy as np
+
+from twin.arrays import FloatArray
+from twin.cutting.engagement import Positions
+from twin.errors import ReplayError
+from twin.motion.path import Move
+from twin.motion.sweep import SweptVolume
+from twin.record import Step
+from twin.simulation.clock import Turned
+from twin.simulation.contacts import forbidden
+from twin.simulation.preview import Piece
+from twin.simulation.setup import Setup
+from twin.simulation.solve import Solved, StepSolver, one_ahead
+from twin.simulation.tools import ToolSetup
+
+#: Steps of a motion that are solved together, whatever the number of threads.
+_STEPS_TOGETHER = 64
+#: Most steps of one motion, and most force samples of one step and of steps that are solved together.
+_MOST_STEPS, _MOST_SAMPLES, _SAMPLES_TOGETHER = 10_000_000, 5_000_000, 1_000_000
+
+
+def positions(move: Move, tool: ToolSetup, ends: FloatArray, feed: FloatArray, pending: SweptVolume) -> Positions:
+    """The middles of steps whose ends are given, shape (n + 1, 3)."""
+    n = len(ends) - 1
+    return Positions(
+        0.5 * (ends[:-1] + ends[1:]),
+        np.repeat(feed[None, :], n, axis=0),
+        np.full(n, move.feed_mm_min / 60.0),
+        np.full(n, move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)),
+        np.full(n, len(pending), dtype=np.int64),
+    )
+
+
+def piece_steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iterator[Step]:
+    """The steps of one straight piece: those of a feed motion are solved at their middles, many together."""
+    start, end, duration_s = piece
+    if forbidden(move) is not None or not np.any(end != start):
+        yield setup.recorder.air_step(move, start, end, duration_s)
+        return
+    along = end - start
+    length = float(np.linalg.norm(along))
+    count = max(1, math.ceil(length / setup.step_mm * (1.0 - 1e-9)))
+    step_s = duration_s / count
+    per_step = setup.recorder.samples_in(step_s, move.spindle_rpm)
+    refuse_endless(move, count, per_step, setup)
+    together = max(1, min(_STEPS_TOGETHER, int(_SAMPLES_TOGETHER / max(1.0, per_step))))
+    ends = start + along * (np.arange(count + 1) / count)[:, None]
+    pending = setup.material.pending(tool.number, start, along / length)
+    turns = setup.recorder.clock.turns(setup.recorder.t_s, step_s, move.spindle_rpm)
+    begun = _begun(move, tool, ends, along / length, pending, turns, setup.solver, together)
+    for first, turned, answer in one_ahead(begun):
+        for i, (samples, solved) in enumerate(zip(turned, answer(), strict=True), start=first):
+            yield setup.recorder.step(move, ends[i], ends[i + 1], step_s, samples, solved)
+
+
+def chord_steps(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup) -> Iterator[Step]:
+    """The steps of consecutive chords of a feed motion, one for each, solved together.
+
+    Each chord finds the material as those before it leave it: their sweeps are excluded exactly. The slices must stay
+    as they are until the last step has been passed on.
+
+    Args:
+        chords: none longer than a step.
+    """
+    recorder, material = setup.recorder, setup.material
+    turned, t_s = [], recorder.t_s
+    for _, _, duration_s in chords:
+        turned.append(recorder.clock.advance(t_s, duration_s, move.spindle_rpm))
+        t_s += duration_s
+    ends = np.array([chords[0][0], *(end for _, end, _ in chords)])
+    pending = material.pending_chords(tool, ends)
+    along = np.diff(ends, axis=0)
+    n = len(chords)
+    at = Positions(
+        0.5 * (ends[:-1] + (ends[:-1] + along)),
+        along / np.array([np.linalg.norm(one) for one in along])[:, None],
+        np.full(n, move.feed_mm_min / 60.0),
+        np.full(n, move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)),
+        np.arange(material.waiting, material.waiting + n, dtype=np.int64),
+    )
+    angles = [angle for _, angle in turned]
+    answer = setup.solver.solve(tool, at, angles, np.full(n, move.spindle_rpm), pending)()
+    for (start, end, duration_s), samples, solved in zip(chords, turned, answer, strict=True):
+        yield recorder.step(move, start, end, duration_s, samples, solved)
+
+
+def chords_are_steps(move: Move, setup: Setup) -> bool:
+    """Whether each chord of an arc is one step: neither longer than one nor divided at key frames."""
+    corners = move.corners_mm(setup.step_mm, setup.tolerance.chord_mm)
+    lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+    longest, total = float(lengths.max()), float(lengths.sum())
+    if not lengths.min() > 0.0 or longest > setup.step_mm:
+        return False
+    return move.duration_s * longest / total <= setup.preview.every_s
+
+
+def chord_groups(move: Move, pieces: Iterator[Piece], setup: Setup) -> Iterator[list[Piece]]:
+    """The pieces of a motion in groups that `chord_steps` can solve together; each must be cut before the next."""
+    held = list(islice(pieces, _STEPS_TOGETHER))
+    while held:
+        lengths = [float(np.linalg.norm(end - start)) for start, end, _ in held]
+        samples = max(setup.recorder.samples_in(duration_s, move.spindle_rpm) for _, _, duration_s in held)
+        refuse_endless(move, len(held), samples, setup)
+        most = max(1, int(_SAMPLES_TOGETHER / max(1.0, samples)))
+        count = setup.material.until_subtracted(lengths[:most])
+        yield held[:count]
+        held = [*held[count:], *islice(pieces, count)]
+
+
+def refuse_endless(move: Move, steps: int, samples: float, setup: Setup) -> None:
+    """Refuses a motion with far too many steps, or steps with far too many samples: a number must be wrong."""
+    at = f"{setup.program}:{move.nc_line}"
+    if steps > _MOST_STEPS:
+        raise ReplayError(
+            f"{at}: a motion of {steps:.3g} steps; expected at most {_MOST_STEPS:g}, a larger simulation.step_mm"
+        )
+    if samples > _MOST_SAMPLES:
+        raise ReplayError(
+            f"{at}: {samples:.3g} force samples in one step at F{move.feed_mm_min:g} S{abs(move.spindle_rpm):g}; "
+            f"expected at most {_MOST_SAMPLES:g}, a higher feed or a larger simulation.angle_step_deg"
+        )
+
+
+def _begun(
+    move: Move,
+    tool: ToolSetup,
+    ends: FloatArray,
+    feed: FloatArray,
+    pending: SweptVolume,
+    turns: Iterator[Turned],
+    solver: StepSolver,
+    together: int,
+) -> Iterator[tuple[int, list[Turned], Callable[[], list[Solved]]]]:
+    """Begin to solve the steps of a line, many together.
+
+    Args:
+        ends: shape (n + 1, 3), the ends of n steps.
+        feed: shape (3,), unit vector along them.
+        pending: sweeps that are not yet subtracted from the slices.
+        turns: times and spindle angles of each step's samples.
+        together: how many steps are solved together.
+
+    Yields:
+        Number of the first step, the samples of each, and a function that waits for the answer.
+    """
+    for first in range(0, len(ends) - 1, together):
+        part = ends[first : first + together + 1]
+        n = len(part) - 1
+        turned = list(islice(turns, n))
+        at = positions(move, tool, part, feed, pending)
+        rpm = np.full(n, move.spindle_rpm)
+        yield first, turned, solver.solve(tool, at, [angles for _, angles in turned], rpm, pending)
