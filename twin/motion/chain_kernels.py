@@ -10,26 +10,61 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import Strips
 from twin.jit import helper, njit
-from twin.motion.section_kernels import repeat_nodes
+from twin.motion.node_kernels import (
+    INSET,
+    MAX_DEPTH,
+    NO_SECTION,
+    NODE_FIELDS,
+    SAME_SECTION,
+    START_INTERVALS,
+    Node,
+    append_node,
+    node_of,
+    off_chord,
+    push_node,
+    repeat_nodes,
+)
 from twin.motion.swept_kernels import BodyShape, Motion, disc_upper, highest, lowest
 from twin.tools.meridian_kernels import profile_height, profile_radius
 
-_START_INTERVALS, _MAX_DEPTH, _NODE_FIELDS = 8, 7, 5
-#: Sections that differ by less than this part of the tool's radius are the same but for rounding; so is their size.
-_SAME_SECTION, _NO_SECTION = 1e-12, 1e-9
-#: Nodes keep this part of half a section's width from its middle, for rounding.
-_INSET = 1.0 - 1e-12
 #: Columns of the sections of chords by a horizontal plane: two discs, each u, v, radius.
 _U0, _V0, _R0, _U1, _V1, _R1 = range(6)
+#: Chords are looked at up to this part beyond the distance at which they can matter, for rounding.
+_OUTSET = 1.0 + 1e-9
+#: Columns of parts and blocks after those of a chord: one over the square of its length in plan, or 0; and how far the
+#: chords of a block are off its line.
+_PER_SQUARE, _BULGE = 6, 7
+#: Intervals halved less often than this are judged by a second point.
+_LOOK_TWICE = 3
+#: Most discs by which the section of a chord is described.
+_DISCS = 16
+#: Chords in a block.
+_BLOCK = 8
+
+
+class _Section(NamedTuple):
+    """One plane's section: u runs ``half`` to either side of ``middle`` on the plane ``w``.
+
+    Attributes:
+        parts: shape (n, 7), on a vertical plane the chords that reach it and their `_PER_SQUARE`; on a horizontal one
+            the discs at the ends of each chord.
+        blocks: shape (m, 8), lines from the start to the end of `_BLOCK` chords each, as a chord, their `_PER_SQUARE`,
+            and how far the chords are off them; on vertical planes.
+    """
+
+    w: float
+    middle: float
+    half: float
+    parts: FloatArray
+    blocks: FloatArray
 
 
 class ChainPlanes(NamedTuple):
-    """Planes that cut a chain, and what of it need not be cut.
+    """Planes that cut a chain, and the parts of it that need not be cut.
 
     Attributes:
         horizontal: whether the tool axis is their normal.
@@ -52,16 +87,6 @@ class ChainPlanes(NamedTuple):
     band: float
 
 
-class _Node(NamedTuple):
-    """A node of a strip: ``phi`` is the angle whose cosine places u in the section, from 0 to pi."""
-
-    phi: float
-    u: float
-    lo: float
-    hi: float
-    fresh: bool
-
-
 @njit
 def chain_nodes(body: BodyShape, chords: FloatArray, planes: ChainPlanes, strips: Strips) -> int:
     """Strips of a chain of sweeps on consecutive planes, refined as those of one sweep.
@@ -73,7 +98,7 @@ def chain_nodes(body: BodyShape, chords: FloatArray, planes: ChainPlanes, strips
     Returns:
         Number of nodes written, or -1 when they do not fit.
     """
-    stack, sections = np.empty((_MAX_DEPTH + 2, _NODE_FIELDS)), np.empty((len(chords), 6))
+    stack, parts = np.empty((MAX_DEPTH + 2, NODE_FIELDS)), np.empty((2 * len(chords) + 4 * _DISCS, 8))
     offsets, nodes, fresh = strips.offsets, strips.nodes, strips.fresh
     unchanged = _unchanged_above(body, chords, planes)
     written, offsets[0] = 0, 0
@@ -85,9 +110,9 @@ def chain_nodes(body: BodyShape, chords: FloatArray, planes: ChainPlanes, strips
             elif i > 0 and w - planes.pitch >= unchanged and w <= _reached_by_all(body, chords):
                 written = repeat_nodes(nodes, fresh, offsets[i - 1], written)
             else:
-                written = _plane_nodes(body, chords, planes, w, sections, stack, strips, written)
+                written = _plane_nodes(body, chords, planes, w, parts, stack, strips, written)
         else:
-            written = _plane_nodes(body, chords, planes, w, sections, stack, strips, written)
+            written = _plane_nodes(body, chords, planes, w, parts, stack, strips, written)
         if written < 0:
             return -1
         offsets[i + 1] = written
@@ -101,14 +126,16 @@ def _unchanged_above(body: BodyShape, chords: FloatArray, planes: ChainPlanes) -
         return math.inf
     end = len(chords) - 1
     tip = max(chords[0, 0], chords[end, 0] + chords[end, 1])
-    return tip + max(0.0, body.meridian.arc_height - body.drop) + (planes.band if planes.band < math.inf else 0.0)
+    return float(
+        tip + max(0.0, body.meridian.arc_height - body.drop) + (planes.band if planes.band < math.inf else 0.0)
+    )
 
 
 @helper
 def _reached_by_all(body: BodyShape, chords: FloatArray) -> float:
     """Height up to which the body reaches all along the chain."""
     end = len(chords) - 1
-    return min(chords[0, 0], chords[end, 0] + chords[end, 1]) + body.meridian.height - body.drop
+    return float(min(chords[0, 0], chords[end, 0] + chords[end, 1]) + body.meridian.height - body.drop)
 
 
 @helper
@@ -117,49 +144,59 @@ def _plane_nodes(
     chords: FloatArray,
     planes: ChainPlanes,
     w: float,
-    sections: FloatArray,
+    room: FloatArray,
     stack: FloatArray,
     strips: Strips,
     written: int,
 ) -> int:
     """Append the nodes of the plane ``w``; returns the number then, or -1 when they do not fit."""
     nodes, fresh = strips.nodes, strips.fresh
-    if planes.horizontal:
-        count = _disc_sections(body, chords, w, sections)
-        low, high = _range_of_discs(sections, count)
-    else:
-        count = _vertical_sections(body, chords, w, sections)
-        low, high = _range_of_chords(body, sections, count, w)
-    half, middle = 0.5 * (high - low), 0.5 * (high + low)
-    if not half > _NO_SECTION * body.meridian.radius:
+    section = _section(body, chords, planes, w, room)
+    if not section.half > NO_SECTION * body.meridian.radius:
         return written
-    half *= _INSET
     first = written
-    left = _node_at(body, chords, planes, sections[:count], w, middle, half, 0.0)
-    written = _append_node(left, nodes, fresh, written)
-    for piece in range(_START_INTERVALS):
+    left = _node_at(body, chords, planes, section, 0.0)
+    written = append_node(left, nodes, fresh, written)
+    for piece in range(START_INTERVALS):
         depth = 0
-        phi = math.pi * (piece + 1) / _START_INTERVALS
-        _push(stack, depth, _node_at(body, chords, planes, sections[:count], w, middle, half, phi))
+        phi = math.pi * (piece + 1) / START_INTERVALS
+        push_node(stack, depth, _node_at(body, chords, planes, section, phi))
         while depth >= 0:
-            right = _node_of(stack, depth)
-            between = _node_at(
-                body, chords, planes, sections[:count], w, middle, half, 0.5 * (left.phi + right.phi)
-            )
-            if depth >= _MAX_DEPTH or _is_straight(left, between, right, planes.chord):
-                written = _append_node(right, nodes, fresh, written)
+            right = node_of(stack, depth)
+            between = _node_at(body, chords, planes, section, 0.5 * (left.phi + right.phi))
+            straight = _is_straight(left, between, right, planes.chord)
+            if straight and depth < _LOOK_TWICE:
+                # a curve that bends to both sides may cross its chord in the middle
+                quarter = _node_at(body, chords, planes, section, 0.75 * left.phi + 0.25 * right.phi)
+                straight = _is_straight(left, quarter, right, planes.chord)
+            if depth >= MAX_DEPTH or straight:
+                written = append_node(right, nodes, fresh, written)
                 left = right
                 depth -= 1
             else:
                 depth += 1
-                _push(stack, depth, between)
+                push_node(stack, depth, between)
         if written < 0:
             return -1
     return written if written - first >= 2 else first
 
 
 @helper
-def _vertical_sections(body: BodyShape, chords: FloatArray, w: float, sections: FloatArray) -> int:
+def _section(body: BodyShape, chords: FloatArray, planes: ChainPlanes, w: float, room: FloatArray) -> _Section:
+    """The section by a plane, its parts and blocks in ``room``."""
+    if planes.horizontal:
+        count = _disc_parts(body, chords, w, planes.chord, room)
+        low, high = _range_of_discs(room, count)
+        blocks = 0
+    else:
+        count = _vertical_parts(body, chords, w, room)
+        low, high = _range_of_chords(body, room, count, w)
+        blocks = _make_blocks(room, count)
+    return _Section(w, 0.5 * (high + low), 0.5 * (high - low) * INSET, room[:count], room[count : count + blocks])
+
+
+@helper
+def _vertical_parts(body: BodyShape, chords: FloatArray, w: float, parts: FloatArray) -> int:
     """Copy the chords that reach a vertical plane, those that reach lowest first; returns their number."""
     radius, n, m = body.meridian.radius, 0, len(chords)
     down = chords[m - 1, 4] + chords[m - 1, 5] <= chords[0, 4]
@@ -167,8 +204,39 @@ def _vertical_sections(body: BodyShape, chords: FloatArray, w: float, sections: 
         i = m - 1 - k if down else k
         begin, end = chords[i, 0], chords[i, 0] + chords[i, 1]
         if min(begin, end) - radius <= w <= max(begin, end) + radius:
-            sections[n] = chords[i]
+            parts[n, :_PER_SQUARE] = chords[i]
+            parts[n, _PER_SQUARE] = _per_square(chords[i, 1], chords[i, 3])
             n += 1
+    return n
+
+
+@helper
+def _per_square(dw: float, du: float) -> float:
+    square = dw * dw + du * du
+    return 1.0 / square if square > 0.0 else 0.0
+
+
+@helper
+def _make_blocks(room: FloatArray, count: int) -> int:
+    """Write the blocks of parts after them; returns their number."""
+    n = 0
+    for first in range(0, count, _BLOCK):
+        last = min(first + _BLOCK, count) - 1
+        # parts follow each other forwards or backwards
+        back = first < last and room[first + 1, 0] + room[first + 1, 1] == room[first, 0]
+        back = back and room[first + 1, 2] + room[first + 1, 3] == room[first, 2]
+        head, tail = (last, first) if back else (first, last)
+        row = room[count + n]
+        row[0], row[2] = room[head, 0], room[head, 2]
+        row[1] = room[tail, 0] + room[tail, 1] - row[0]
+        row[3] = room[tail, 2] + room[tail, 3] - row[2]
+        row[_PER_SQUARE] = _per_square(row[1], row[3])
+        bulge = 0.0
+        for k in range(first, last + 1):
+            bulge = max(bulge, _distance2_to(room, count + n, room[k, 0], room[k, 2]))
+            bulge = max(bulge, _distance2_to(room, count + n, room[k, 0] + room[k, 1], room[k, 2] + room[k, 3]))
+        row[_BULGE] = math.sqrt(bulge)
+        n += 1
     return n
 
 
@@ -178,32 +246,56 @@ def _motion(row: FloatArray) -> Motion:
 
 
 @helper
-def _range_of_chords(body: BodyShape, sections: FloatArray, count: int, w: float) -> tuple[float, float]:
+def _range_of_chords(body: BodyShape, parts: FloatArray, count: int, w: float) -> tuple[float, float]:
     """Extent along u of the chain's section by a vertical plane; empty when first > last."""
     radius, low, high = body.meridian.radius, math.inf, -math.inf
     for k in range(count):
-        m = _motion(sections[k])
+        m = _motion(parts[k])
         low = min(low, -disc_upper(m.w, m.dw, -m.u, -m.du, radius, w, 0.0, 1.0))
         high = max(high, disc_upper(m.w, m.dw, m.u, m.du, radius, w, 0.0, 1.0))
     return low, high
 
 
 @helper
-def _disc_sections(body: BodyShape, chords: FloatArray, z: float, sections: FloatArray) -> int:
-    """Sections of the chords at a height, each as the discs at its two ends; returns their number."""
+def _disc_parts(body: BodyShape, chords: FloatArray, z: float, chord: float, parts: FloatArray) -> int:
+    """Sections of the chords at a height, as discs at two ends of each or of pieces of it; returns their number.
+
+    Between the two discs the radius is taken to grow evenly, so chords at which it does not are divided.
+    """
     tool, n = body.meridian, 0
     for i in range(len(chords)):
         tip, dz = chords[i, 0], chords[i, 1]
         first, last = _times_between(tip, dz, z - tool.height + body.drop, z)
         if first > last:
             continue
-        for e, t in enumerate((first, last)):
-            sections[n, 3 * e] = chords[i, 2] + t * chords[i, 3]
-            sections[n, 3 * e + 1] = chords[i, 4] + t * chords[i, 5]
-            height = min(max(0.0, z - tip - t * dz + body.drop), tool.height)
-            sections[n, 3 * e + 2] = profile_radius(tool, height)
-        n += 1
+        shallow, deep = (first, last) if dz <= 0.0 else (last, first)
+        pieces, most = 1, min(_DISCS, (len(parts) - n) // (2 * (len(chords) - i)))
+        while 2 * pieces <= most and not _grows_evenly(body, z - tip, dz, shallow, deep, pieces, chord):
+            pieces *= 2
+        for j in range(pieces):
+            for e in range(2):
+                t = shallow + (deep - shallow) * ((j + e) / pieces) ** 2
+                parts[n, 3 * e] = chords[i, 2] + t * chords[i, 3]
+                parts[n, 3 * e + 1] = chords[i, 4] + t * chords[i, 5]
+                parts[n, 3 * e + 2] = _radius_at(body, z - tip - t * dz)
+            n += 1
     return n
+
+
+@helper
+def _radius_at(body: BodyShape, above_tip: float) -> float:
+    """Radius of the body's section at a height above the tool tip."""
+    return profile_radius(body.meridian, min(max(0.0, above_tip + body.drop), body.meridian.height))
+
+
+@helper
+def _grows_evenly(
+    body: BodyShape, height: float, dz: float, shallow: float, deep: float, pieces: int, chord: float
+) -> bool:
+    """Whether the radius in the middle of the first piece of a chord is about the mean of those at its ends."""
+    end = shallow + (deep - shallow) / (pieces * pieces)
+    mean = 0.5 * (_radius_at(body, height - shallow * dz) + _radius_at(body, height - end * dz))
+    return abs(_radius_at(body, height - 0.5 * (shallow + end) * dz) - mean) <= chord
 
 
 @helper
@@ -216,32 +308,23 @@ def _times_between(tip: float, dz: float, low: float, high: float) -> tuple[floa
 
 
 @helper
-def _range_of_discs(sections: FloatArray, count: int) -> tuple[float, float]:
-    """Extent along u of the sections at a height; empty when first > last."""
+def _range_of_discs(parts: FloatArray, count: int) -> tuple[float, float]:
+    """Extent along u of the parts at a height; empty when first > last."""
     low, high = math.inf, -math.inf
     for k in range(count):
-        low = min(low, sections[k, _U0] - sections[k, _R0], sections[k, _U1] - sections[k, _R1])
-        high = max(high, sections[k, _U0] + sections[k, _R0], sections[k, _U1] + sections[k, _R1])
+        low = min(low, parts[k, _U0] - parts[k, _R0], parts[k, _U1] - parts[k, _R1])
+        high = max(high, parts[k, _U0] + parts[k, _R0], parts[k, _U1] + parts[k, _R1])
     return low, high
 
 
 @helper
-def _node_at(
-    body: BodyShape,
-    chords: FloatArray,
-    planes: ChainPlanes,
-    sections: FloatArray,
-    w: float,
-    middle: float,
-    half: float,
-    phi: float,
-) -> _Node:
+def _node_at(body: BodyShape, chords: FloatArray, planes: ChainPlanes, section: _Section, phi: float) -> Node:
     """The node of a section at an angle."""
-    u = middle - half * math.cos(phi)
+    w, u = section.w, section.middle - section.half * math.cos(phi)
     if planes.horizontal:
-        lo, hi = -_discs_upper(sections, u, -1.0), _discs_upper(sections, u, 1.0)
+        lo, hi = -_discs_upper(section.parts, u, -1.0), _discs_upper(section.parts, u, 1.0)
     else:
-        lo, hi = _envelope(body, sections, w, u, planes.top)
+        lo, hi = _envelope(body, section, u, planes.top)
         hi = min(hi, lo + planes.band)
     fresh = True
     end = len(chords) - 1
@@ -252,45 +335,88 @@ def _node_at(
         c = chords[end]
         at = Motion(c[0] + c[1], 0.0, c[2] + c[3], 0.0, c[4] + c[5], 0.0)
         fresh = _beyond(body, planes, at, w, u, lo, hi)
-    return _Node(phi, u, lo, hi, fresh)
+    return Node(phi, u, lo, hi, fresh)
 
 
 @helper
-def _envelope(body: BodyShape, sections: FloatArray, w: float, u: float, top: float) -> tuple[float, float]:
-    """The lowest and the highest point of several sweeps at (w, u); (inf, -inf) where there is none."""
-    tool = body.meridian
-    lo, hi = math.inf, -math.inf
-    for k in range(len(sections)):
-        m = _motion(sections[k])
-        distance = _distance_to(m, w, u)
-        if distance > tool.radius:
-            continue
-        lowest_tip = m.v + min(0.0, m.dv)
-        if max(lowest_tip, lowest_tip - body.drop + profile_height(tool, distance)) < lo:
-            lo = min(lo, max(lowest(body, m, w, u), lowest_tip))
-        least = lowest_tip - body.drop + tool.height
-        hi = max(hi, least if least >= top else highest(body, m, w, u))
+def _envelope(body: BodyShape, section: _Section, u: float, top: float) -> tuple[float, float]:
+    """The lowest and the highest point of several sweeps at u of a section; (inf, -inf) where there is none.
+
+    Sweeps too far away to reach below the lowest point that is known are left out, the nearest come first.
+    """
+    tool, parts, blocks = body.meridian, section.parts, section.blocks
+    tip = _lowest_tip(parts)
+    lo, near, nearest, least = math.inf, tool.radius, -1, math.inf
+    for b in range(len(blocks)):
+        distance2 = _distance2_to(blocks, b, section.w, u)
+        if distance2 < least:
+            nearest, least = b, distance2
+    if nearest >= 0:
+        lo, near = _lowest_of_block(body, section, u, nearest, tip, lo, near)
+    for b in range(len(blocks)):
+        reach = near + blocks[b, _BULGE]
+        if b != nearest and _distance2_to(blocks, b, section.w, u) <= reach * reach * _OUTSET:
+            lo, near = _lowest_of_block(body, section, u, b, tip, lo, near)
+    hi = tip - body.drop + tool.height
+    if lo == math.inf:
+        return math.inf, -math.inf
+    if hi < top:
+        for k in range(len(parts)):
+            hi = max(hi, highest(body, _motion(parts[k]), section.w, u))
     return lo, hi
 
 
 @helper
-def _distance_to(m: Motion, w: float, u: float) -> float:
-    """Distance of a plan point from the line of a motion, a little less for rounding."""
-    ew, eu = w - m.w, u - m.u
-    square = m.dw * m.dw + m.du * m.du
-    t = 0.0
-    if square > 0.0:
-        t = min(1.0, max(0.0, (ew * m.dw + eu * m.du) / square))
-    return math.hypot(ew - t * m.dw, eu - t * m.du) * _INSET
+def _lowest_tip(parts: FloatArray) -> float:
+    """Lowest tip on chords that go up or down throughout."""
+    if len(parts) == 0:
+        return math.inf
+    a, b = parts[0], parts[len(parts) - 1]
+    return float(min(a[4], a[4] + a[5], b[4], b[4] + b[5]))
 
 
 @helper
-def _discs_upper(sections: FloatArray, u: float, sense: float) -> float:
+def _lowest_of_block(
+    body: BodyShape, section: _Section, u: float, block: int, tip: float, lo: float, near: float
+) -> tuple[float, float]:
+    """The lowest point of sweeps at u, and how far from the tool axis a lower one can only be.
+
+    Args:
+        tip: lowest of all tips.
+        lo, near: so far.
+    """
+    tool, parts, w = body.meridian, section.parts, section.w
+    for k in range(_BLOCK * block, min(_BLOCK * (block + 1), len(parts))):
+        distance2 = _distance2_to(parts, k, w, u)
+        if distance2 > near * near * _OUTSET:
+            continue
+        m = _motion(parts[k])
+        lowest_tip = m.v + min(0.0, m.dv)
+        if lowest_tip - body.drop + profile_height(tool, math.sqrt(distance2) * INSET) < lo:
+            found = max(lowest(body, m, w, u), lowest_tip)
+            if found < lo:
+                lo = found
+                near = min(near, profile_radius(tool, min(max(0.0, lo - tip + body.drop), tool.height)))
+    return lo, near
+
+
+@helper
+def _distance2_to(parts: FloatArray, k: int, w: float, u: float) -> float:
+    """Square of the distance of a plan point from the line of a chord."""
+    ew, eu, dw, du = w - parts[k, 0], u - parts[k, 2], parts[k, 1], parts[k, 3]
+    t = min(1.0, max(0.0, (ew * dw + eu * du) * parts[k, _PER_SQUARE]))
+    ew -= t * dw
+    eu -= t * du
+    return float(ew * ew + eu * eu)
+
+
+@helper
+def _discs_upper(parts: FloatArray, u: float, sense: float) -> float:
     """Largest v times ``sense`` at u of the hulls of pairs of discs; -inf where there is none."""
     best = -math.inf
-    for k in range(len(sections)):
-        u0, v0, r0 = sections[k, _U0], sense * sections[k, _V0], sections[k, _R0]
-        u1, v1, r1 = sections[k, _U1], sense * sections[k, _V1], sections[k, _R1]
+    for k in range(len(parts)):
+        u0, v0, r0 = parts[k, _U0], sense * parts[k, _V0], parts[k, _R0]
+        u1, v1, r1 = parts[k, _U1], sense * parts[k, _V1], parts[k, _R1]
         if max(v0 + r0, v1 + r1) <= best:
             continue
         rest0, rest1 = r0 * r0 - (u - u0) * (u - u0), r1 * r1 - (u - u1) * (u - u1)
@@ -313,13 +439,11 @@ def _discs_upper(sections: FloatArray, u: float, sense: float) -> float:
 
 
 @helper
-def _beyond(
-    body: BodyShape, planes: ChainPlanes, at: Motion, w: float, u: float, lo: float, hi: float
-) -> bool:
+def _beyond(body: BodyShape, planes: ChainPlanes, at: Motion, w: float, u: float, lo: float, hi: float) -> bool:
     """Whether a section reaches beyond that of the body at rest, below the top of the material."""
     if not lo <= hi:
         return True
-    same = _SAME_SECTION * body.meridian.radius
+    same = SAME_SECTION * body.meridian.radius
     if planes.horizontal:
         height = w - at.w + body.drop
         if w < at.w or height > body.meridian.height:
@@ -337,46 +461,13 @@ def _beyond(
 
 
 @helper
-def _append_node(node: _Node, nodes: FloatArray, fresh: NDArray[np.bool_], written: int) -> int:
-    """Append a node unless its section is empty; returns the number of nodes then, or -1 when they do not fit."""
-    if written < 0 or not node.lo <= node.hi:
-        return written
-    if written >= len(nodes):
-        return -1
-    nodes[written, 0], nodes[written, 1], nodes[written, 2] = node.u, node.lo, node.hi
-    fresh[written] = node.fresh
-    return written + 1
-
-
-@helper
-def _push(stack: FloatArray, depth: int, node: _Node) -> None:
-    stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3] = node.phi, node.u, node.lo, node.hi
-    stack[depth, 4] = 1.0 if node.fresh else 0.0
-
-
-@helper
-def _node_of(stack: FloatArray, depth: int) -> _Node:
-    return _Node(stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3], stack[depth, 4] > 0.0)
-
-
-@helper
-def _is_straight(left: _Node, middle: _Node, right: _Node, chord: float) -> bool:
+def _is_straight(left: Node, middle: Node, right: Node, chord: float) -> bool:
     """Whether lo and hi need no node between two, judged by one in the middle."""
     if not (left.fresh or right.fresh or middle.fresh):
         return True
     if not (left.lo <= left.hi and right.lo <= right.hi and middle.lo <= middle.hi):
         return True
     return (
-        _off_chord(middle.u, middle.lo, left.u, left.lo, right.u, right.lo) <= chord
-        and _off_chord(middle.u, middle.hi, left.u, left.hi, right.u, right.hi) <= chord
+        off_chord(middle.u, middle.lo, left.u, left.lo, right.u, right.lo) <= chord
+        and off_chord(middle.u, middle.hi, left.u, left.hi, right.u, right.hi) <= chord
     )
-
-
-@helper
-def _off_chord(u: float, v: float, ua: float, va: float, ub: float, vb: float) -> float:
-    """Distance of a point from the chord between two others."""
-    du, dv = ub - ua, vb - va
-    length = math.hypot(du, dv)
-    if length == 0.0:
-        return math.hypot(u - ua, v - va)
-    return abs((u - ua) * dv - (v - va) * du) / length

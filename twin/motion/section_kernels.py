@@ -9,20 +9,25 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import Strips, Tops
 from twin.jit import helper, njit
+from twin.motion.node_kernels import (
+    INSET,
+    MAX_DEPTH,
+    NO_SECTION,
+    NODE_FIELDS,
+    SAME_SECTION,
+    START_INTERVALS,
+    Node,
+    append_node,
+    node_of,
+    off_chord,
+    push_node,
+    repeat_nodes,
+)
 from twin.motion.swept_kernels import BodyShape, Motion, disc_upper, highest, lowest, reach, side, upside_down
-
-_START_INTERVALS = 8
-_MAX_DEPTH = 7
-_NODE_FIELDS = 5
-#: Sections that differ by less than this part of the tool's radius are the same but for rounding; so is their size.
-_SAME_SECTION, _NO_SECTION = 1e-12, 1e-9
-#: Nodes keep this part of half a section's width from its middle, for rounding.
-_INSET = 1.0 - 1e-12
 
 
 class Planes(NamedTuple):
@@ -54,16 +59,6 @@ class _Section(NamedTuple):
     half: float
 
 
-class _Node(NamedTuple):
-    """A node of a strip: ``phi`` is the angle whose cosine places u in the section, from 0 to pi."""
-
-    phi: float
-    u: float
-    lo: float
-    hi: float
-    fresh: bool
-
-
 @njit
 def section_nodes(body: BodyShape, motion: Motion, planes: Planes, tops: Tops, strips: Strips) -> int:
     """Strips of a swept body on consecutive planes.
@@ -79,14 +74,14 @@ def section_nodes(body: BodyShape, motion: Motion, planes: Planes, tops: Tops, s
     Returns:
         Number of nodes written, or -1 when they do not fit.
     """
-    stack = np.empty((_MAX_DEPTH + 2, _NODE_FIELDS))
+    stack = np.empty((MAX_DEPTH + 2, NODE_FIELDS))
     offsets, nodes, fresh = strips.offsets, strips.nodes, strips.fresh
     written = 0
     offsets[0] = 0
     for i in range(planes.planes):
         w = planes.first_w + i * planes.pitch
         if i > 0 and len(tops.heights) == 0 and _same_as_before(body, motion, planes, w):
-            written = _repeat_nodes(nodes, fresh, offsets[i - 1], written)
+            written = repeat_nodes(nodes, fresh, offsets[i - 1], written)
         else:
             written = _plane_nodes(body, motion, planes, tops, i, stack, strips, written)
         if written < 0:
@@ -106,19 +101,6 @@ def _same_as_before(body: BodyShape, motion: Motion, planes: Planes, w: float) -
 
 
 @helper
-def _repeat_nodes(nodes: FloatArray, fresh: NDArray[np.bool_], first: int, end: int) -> int:
-    """Append the last plane's nodes, [first, end), again; returns the number then, or -1 when they do not fit."""
-    after = end + (end - first)
-    if after > len(nodes):
-        return -1
-    for n in range(first, end):
-        m = n + (end - first)
-        nodes[m, 0], nodes[m, 1], nodes[m, 2] = nodes[n, 0], nodes[n, 1], nodes[n, 2]
-        fresh[m] = fresh[n]
-    return after
-
-
-@helper
 def _plane_nodes(
     body: BodyShape,
     motion: Motion,
@@ -135,31 +117,31 @@ def _plane_nodes(
     w = planes.first_w + i * planes.pitch
     low, high = _range_of_u(body, planes.horizontal, motion, w)
     half = 0.5 * (high - low)
-    if not half > _NO_SECTION * body.meridian.radius:
+    if not half > NO_SECTION * body.meridian.radius:
         return written
-    section = _Section(w, 0.5 * (high + low), half * _INSET)
+    section = _Section(w, 0.5 * (high + low), half * INSET)
     first = written
     flat_v = _flat_bottom(body, motion, planes.horizontal)
     left = _node_at(body, motion, planes, section, 0.0)
-    written = _append_node(left, nodes, fresh, written)
+    written = append_node(left, nodes, fresh, written)
     clear_before, all_clear = known, known
-    for piece in range(_START_INTERVALS):
+    for piece in range(START_INTERVALS):
         depth = 0
-        _push(stack, depth, _node_at(body, motion, planes, section, math.pi * (piece + 1) / _START_INTERVALS))
+        push_node(stack, depth, _node_at(body, motion, planes, section, math.pi * (piece + 1) / START_INTERVALS))
         while depth >= 0:
-            right = _node_of(stack, depth)
+            right = node_of(stack, depth)
             middle = _node_at(body, motion, planes, section, 0.5 * (left.phi + right.phi))
-            clear = known and _is_clear(tops, i, left, middle, right, _SAME_SECTION * body.meridian.radius)
-            if clear or depth >= _MAX_DEPTH or _is_straight(left, middle, right, planes.chord, flat_v):
+            clear = known and _is_clear(tops, i, left, middle, right, SAME_SECTION * body.meridian.radius)
+            if clear or depth >= MAX_DEPTH or _is_straight(left, middle, right, planes.chord, flat_v):
                 if clear and clear_before and written > first and left.lo <= left.hi:
                     fresh[written - 1] = False
                 clear_before, all_clear = clear, all_clear and clear
-                written = _append_node(right, nodes, fresh, written)
+                written = append_node(right, nodes, fresh, written)
                 left = right
                 depth -= 1
             else:
                 depth += 1
-                _push(stack, depth, middle)
+                push_node(stack, depth, middle)
         if written < 0:
             return -1
     if clear_before and written > first and left.lo <= left.hi:
@@ -168,7 +150,7 @@ def _plane_nodes(
 
 
 @helper
-def _is_clear(tops: Tops, i: int, left: _Node, middle: _Node, right: _Node, same: float) -> bool:
+def _is_clear(tops: Tops, i: int, left: Node, middle: Node, right: Node, same: float) -> bool:
     """Whether there is no material between two nodes on plane ``i`` above the strip's lower side, which is convex.
 
     That lies above the lines through the middle and either end, prolonged.
@@ -189,38 +171,15 @@ def _is_clear(tops: Tops, i: int, left: _Node, middle: _Node, right: _Node, same
 
 
 @helper
-def _append_node(node: _Node, nodes: FloatArray, fresh: NDArray[np.bool_], written: int) -> int:
-    """Append a node unless its section is empty; returns the number of nodes then, or -1 when they do not fit."""
-    if written < 0 or not node.lo <= node.hi:
-        return written
-    if written >= len(nodes):
-        return -1
-    nodes[written, 0], nodes[written, 1], nodes[written, 2] = node.u, node.lo, node.hi
-    fresh[written] = node.fresh
-    return written + 1
-
-
-@helper
-def _push(stack: FloatArray, depth: int, node: _Node) -> None:
-    stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3] = node.phi, node.u, node.lo, node.hi
-    stack[depth, 4] = 1.0 if node.fresh else 0.0
-
-
-@helper
-def _node_of(stack: FloatArray, depth: int) -> _Node:
-    return _Node(stack[depth, 0], stack[depth, 1], stack[depth, 2], stack[depth, 3], stack[depth, 4] > 0.0)
-
-
-@helper
 def _flat_bottom(body: BodyShape, motion: Motion, horizontal: bool) -> float:
     """Height up to which lo is on the body's flat bottom at the start; -inf where that makes no kink in lo."""
     if horizontal or body.meridian.disc == 0.0:
         return -math.inf
-    return motion.v + max(0.0, -body.drop) + _SAME_SECTION * body.meridian.radius
+    return motion.v + max(0.0, -body.drop) + SAME_SECTION * body.meridian.radius
 
 
 @helper
-def _is_straight(left: _Node, middle: _Node, right: _Node, chord: float, flat_v: float) -> bool:
+def _is_straight(left: Node, middle: Node, right: Node, chord: float, flat_v: float) -> bool:
     """Whether lo and hi need no node between two, judged by one in the middle.
 
     Between a node on the flat bottom and one beyond its kink the section may be fresh although it is at neither.
@@ -232,29 +191,18 @@ def _is_straight(left: _Node, middle: _Node, right: _Node, chord: float, flat_v:
     if not (left.lo <= left.hi and right.lo <= right.hi and middle.lo <= middle.hi):
         return True
     return (
-        _off_chord(middle.u, middle.lo, left.u, left.lo, right.u, right.lo) <= chord
-        and _off_chord(middle.u, middle.hi, left.u, left.hi, right.u, right.hi) <= chord
+        off_chord(middle.u, middle.lo, left.u, left.lo, right.u, right.lo) <= chord
+        and off_chord(middle.u, middle.hi, left.u, left.hi, right.u, right.hi) <= chord
     )
 
 
 @helper
-def _off_chord(u: float, v: float, ua: float, va: float, ub: float, vb: float) -> float:
-    """Distance of a point from the chord between two others."""
-    du = ub - ua
-    dv = vb - va
-    length = math.hypot(du, dv)
-    if length == 0.0:
-        return math.hypot(u - ua, v - va)
-    return abs((u - ua) * dv - (v - va) * du) / length
-
-
-@helper
-def _node_at(body: BodyShape, motion: Motion, planes: Planes, section: _Section, phi: float) -> _Node:
+def _node_at(body: BodyShape, motion: Motion, planes: Planes, section: _Section, phi: float) -> Node:
     """The node of a section at an angle."""
     u = section.middle - section.half * math.cos(phi)
     lo, hi = _strip_at(body, planes.horizontal, motion, section.w, u)
     fresh = not planes.start_is_cut or _is_new(body, motion, planes, section.w, u, lo, hi)
-    return _Node(phi, u, lo, hi, fresh)
+    return Node(phi, u, lo, hi, fresh)
 
 
 @helper
@@ -268,7 +216,7 @@ def _is_new(body: BodyShape, motion: Motion, planes: Planes, w: float, u: float,
         return True
     if not planes.horizontal:
         hi, hi_start = min(hi, planes.top), min(hi_start, planes.top)
-    same = _SAME_SECTION * body.meridian.radius
+    same = SAME_SECTION * body.meridian.radius
     return lo < lo_start - same or hi > hi_start + same
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ from twin.tools.shape import ToolShape
 _ORDER = ((0, 1, 2), (1, 0, 2), (2, 0, 1))
 #: No tool on whose surface points lie.
 ANYWHERE = Fronts(Meridian(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), np.zeros((0, 3)), np.zeros(0, dtype=np.int32))
-_EMPTY = Strips(0, np.zeros(1, dtype=np.int64), np.zeros((0, 3)), np.zeros(0, dtype=np.bool_))
+EMPTY_STRIPS = Strips(0, np.zeros(1, dtype=np.int64), np.zeros((0, 3)), np.zeros(0, dtype=np.bool_))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,14 +89,6 @@ class Sweep:
             np.maximum(self.start_mm, self.end_mm) + reach_high,
         )
 
-    def follows(self, earlier: Sweep | None) -> bool:
-        """Whether this sweep begins where an earlier one of the same body ended."""
-        return (
-            earlier is not None
-            and bool(np.array_equal(earlier.end_mm, self.start_mm))
-            and earlier.body.shape == self.body.shape
-        )
-
     def strips(
         self,
         axis: int,
@@ -123,7 +115,7 @@ class Sweep:
         """
         first, planes = self.planes_met(axis, low_mm, pitch_mm, count)
         if planes <= 0:
-            return _EMPTY
+            return EMPTY_STRIPS
         cut = Planes(
             horizontal=axis == 2,
             first_w=float(low_mm + (first + 0.5) * pitch_mm),
@@ -133,27 +125,40 @@ class Sweep:
             start_is_cut=start_is_cut,
             top=float(top_mm),
         )
-        motion, offsets = self._motion(axis), np.zeros(planes + 1, dtype=np.int64)
-        room = 128 * planes + 2048
-        while True:
-            strips = Strips(first, offsets, np.empty((room, 3)), np.empty(room, dtype=np.bool_))
-            written = section_nodes(self.body.shape, motion, cut, tops, strips)
-            if written >= 0:
-                return Strips(first, offsets, strips.nodes[:written], strips.fresh[:written])
-            room *= 2
+        motion = self._motion(axis)
+        return strips_by(lambda strips: section_nodes(self.body.shape, motion, cut, tops, strips), first, planes)
 
     def planes_met(self, axis: int, low_mm: float, pitch_mm: float, count: int) -> tuple[int, int]:
         """The first plane of a family that the sweep may touch, and how many, 0 or less for none; see `strips`."""
-        low, high = self.bounds_mm
-        first = max(0, math.ceil((low[axis] - low_mm) / pitch_mm - 0.5))
-        last = min(count - 1, math.floor((high[axis] - low_mm) / pitch_mm - 0.5))
-        return first, last - first + 1
+        return planes_between(self.bounds_mm, axis, low_mm, pitch_mm, count)
 
     def _motion(self, axis: int) -> Motion:
         """The tip's motion in the order (normal, u, v) of a slice family."""
         move = self.end_mm - self.start_mm
         w, u, v = ((float(self.start_mm[a]), float(move[a])) for a in _ORDER[axis])
         return Motion(*w, *u, *v)
+
+
+def planes_between(
+    bounds_mm: tuple[FloatArray, FloatArray], axis: int, low_mm: float, pitch_mm: float, count: int
+) -> tuple[int, int]:
+    """The first plane of a family that meets a box, and how many, 0 or less for none; see `Sweep.strips`."""
+    low, high = bounds_mm
+    first = max(0, math.ceil((low[axis] - low_mm) / pitch_mm - 0.5))
+    last = min(count - 1, math.floor((high[axis] - low_mm) / pitch_mm - 0.5))
+    return first, last - first + 1
+
+
+def strips_by(fill: Callable[[Strips], int], first: int, planes: int) -> Strips:
+    """Strips whose arrays a function fills; it returns the number of nodes, or -1 where they do not fit."""
+    offsets = np.zeros(planes + 1, dtype=np.int64)
+    room = 128 * planes + 2048
+    while True:
+        strips = Strips(first, offsets, np.empty((room, 3)), np.empty(room, dtype=np.bool_))
+        written = fill(strips)
+        if written >= 0:
+            return Strips(first, offsets, strips.nodes[:written], strips.fresh[:written])
+        room *= 2
 
 
 class SweptVolume:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.jit import helper, njit
 from twin.tools.meridian import Meridian
-from twin.tools.meridian_kernels import is_ball, is_flat, profile_height, profile_radius
+from twin.tools.meridian_kernels import is_ball, is_flat, profile_height, profile_radius, profile_slope, resting_offset
 
 _GOLDEN = 0.6180339887498949
 _SEARCH_STEPS = 42
@@ -130,7 +130,7 @@ def lowest(body: BodyShape, motion: Motion, w: float, u: float) -> float:
     if motion.dv == 0.0:
         t = min(max((off.w * motion.dw + off.u * motion.du) / square, first), last)
         return base + profile_height(tool, _distance(tool, off, t))
-    return base + _lowest_by_search(tool, off, first, last)
+    return base + _lowest_on_slope(tool, off, square, first, last)
 
 
 @helper
@@ -146,27 +146,31 @@ def _height_at(tool: Meridian, off: Motion, t: float) -> float:
 
 
 @helper
-def _lowest_by_search(tool: Meridian, off: Motion, first: float, last: float) -> float:
-    """Minimum of `_height_at`, a convex function of t, by golden section."""
-    x0 = last - _GOLDEN * (last - first)
-    x1 = first + _GOLDEN * (last - first)
-    f0 = _height_at(tool, off, x0)
-    f1 = _height_at(tool, off, x1)
-    best = min(_height_at(tool, off, first), _height_at(tool, off, last))
-    for _ in range(_SEARCH_STEPS):
-        if f0 < f1:
-            last = x1
-            x1 = x0
-            f1 = f0
-            x0 = last - _GOLDEN * (last - first)
-            f0 = _height_at(tool, off, x0)
-        else:
-            first = x0
-            x0 = x1
-            f0 = f1
-            x1 = first + _GOLDEN * (last - first)
-            f1 = _height_at(tool, off, x1)
-    return min(best, f0, f1)
+def _rise_at(tool: Meridian, off: Motion, t: float) -> float:
+    """Derivative of `_height_at`; nan where it is not known."""
+    w, u = off.w - t * off.dw, off.u - t * off.du
+    rho = math.hypot(w, u)
+    if rho == 0.0:
+        return off.dv
+    return off.dv - profile_slope(tool, rho) * (w * off.dw + u * off.du) / rho
+
+
+@helper
+def _lowest_on_slope(tool: Meridian, off: Motion, square: float, first: float, last: float) -> float:
+    """Minimum of `_height_at`, a convex function of t, in [first, last]; ``square`` is that of the length in plan.
+
+    The tool is lowest where it would rest on an edge that rises as the motion does.
+    """
+    if _rise_at(tool, off, last) <= 0.0:
+        return _height_at(tool, off, last)
+    if _rise_at(tool, off, first) >= 0.0:
+        return _height_at(tool, off, first)
+    length = math.sqrt(square)
+    middle = (off.w * off.dw + off.u * off.du) / square
+    q = abs(off.w * off.du - off.u * off.dw) / length
+    s = resting_offset(tool, abs(off.dv) / length, q, math.sqrt(max(0.0, tool.radius * tool.radius - q * q)))
+    t = middle - math.copysign(s / length, off.dv)
+    return _height_at(tool, off, min(max(t, first), last))
 
 
 @njit
@@ -441,7 +445,7 @@ def _tangent_plane(fronts: Fronts, i: int, x: float, y: float, z: float) -> Moti
 
 @helper
 def _is_behind(touching: Motion, starts: FloatArray, moves: FloatArray, j: int, most: float) -> bool:
-    """Whether the tip of a sweep is at its start and its end no more than ``most`` before the tip of a tangent plane."""
+    """Whether the tip of a sweep is less than ``most`` before a tangent plane's tip, at its start and its end."""
     at = (
         (starts[j, 0] - touching.w) * touching.dw
         + (starts[j, 1] - touching.u) * touching.du

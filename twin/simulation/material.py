@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from twin.arrays import FloatArray
+from twin.motion.chain import Chain, chained
 from twin.motion.sweep import Body, Sweep, SweptVolume
 from twin.record import CollisionKind
 from twin.simulation.tools import ToolSetup
@@ -23,6 +24,8 @@ PENDING_PITCHES = 10.0
 PENDING_SWEEPS = 48
 #: At least this many sweeps are subtracted together, so that threads have enough to do.
 TOGETHER = 8
+#: Chords are subtracted together when at least this many wait.
+CHORDS_TOGETHER = 32
 #: A sweep this near to a motion's line lies on it, mm.
 SAME_LINE_MM = 1e-9
 #: A sweep of the tool itself this many chord deviations behind a tangent plane does not reach it: it has been enlarged
@@ -31,6 +34,14 @@ _BEHIND_CHORDS = 1.1
 
 #: Lower and upper corner, both of shape (3,).
 Box: TypeAlias = tuple[FloatArray, FloatArray]
+
+
+class _Waiting(NamedTuple):
+    """A sweep that waits, the number of its tool, and whether it may be subtracted together with others."""
+
+    sweep: Sweep
+    tool: int
+    chord: bool
 
 
 class Touch(NamedTuple):
@@ -67,11 +78,12 @@ class Material:
         self.workpiece = workpiece
         self.contact_mm3 = tolerance.contact_mm3
         self._removal = Removal(workpiece, tolerance.chord_mm, threads)
-        self._waiting: deque[tuple[Sweep, int]] = deque()
+        self._waiting: deque[_Waiting] = deque()
         self._window_mm = PENDING_PITCHES * float(np.max(workpiece.pitch_mm))
         self._behind_mm = _BEHIND_CHORDS * tolerance.chord_mm
         self.removed_mm3: dict[int, float] = {}
         self._changed: list[Box] = []
+        self._last_tool = 0
 
     def pending(self, tool: int, start_mm: FloatArray, feed: FloatArray) -> SweptVolume:
         """Sweeps that are not yet subtracted from the slices and can have reached the front of a moving tool.
@@ -84,20 +96,21 @@ class Material:
             start_mm: tool tip at the start of a straight motion, shape (3,).
             feed: unit vector along it, shape (3,).
         """
-        return self._volume([w for w in self._waiting if w[1] != tool or not _behind(w[0], start_mm, feed)], tool)
+        return self._volume([w for w in self._waiting if w.tool != tool or not _behind(w.sweep, start_mm, feed)], tool)
 
     def pending_chords(self, tool: ToolSetup, corners_mm: FloatArray) -> SweptVolume:
         """Sweeps that are not yet subtracted from the slices, and after them those of chords that come next.
 
         Args:
-            corners_mm: shape (n + 1, 3), the ends of n chords, of which the last needs no sweep.
+            corners_mm: shape (n + 1, 3), the ends of n chords, of which the last needs no sweep; without any, only the
+                sweeps that wait.
         """
-        chords = [(Sweep(tool.cutter, a, b), tool.number) for a, b in pairwise(corners_mm[:-1])]
+        chords = [_Waiting(Sweep(tool.cutter, a, b), tool.number, False) for a, b in pairwise(corners_mm[:-1])]
         return self._volume([*self._waiting, *chords], tool.number)
 
-    def _volume(self, sweeps: Sequence[tuple[Sweep, int]], tool: int) -> SweptVolume:
-        behind_mm = [self._behind_mm if by == tool else math.inf for _, by in sweeps]
-        return SweptVolume([sweep for sweep, _ in sweeps], behind_mm)
+    def _volume(self, waiting: Sequence[_Waiting], tool: int) -> SweptVolume:
+        behind_mm = [self._behind_mm if w.tool == tool else math.inf for w in waiting]
+        return SweptVolume([w.sweep for w in waiting], behind_mm)
 
     @property
     def waiting(self) -> int:
@@ -110,7 +123,7 @@ class Material:
         Args:
             lengths_mm: of the next motions.
         """
-        waiting = [sweep.length_mm for sweep, _ in self._waiting]
+        waiting = [w.sweep.length_mm for w in self._waiting]
         for count, length_mm in enumerate(lengths_mm, start=1):
             waiting.append(length_mm)
             if self._due(waiting):
@@ -126,7 +139,11 @@ class Material:
         return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
 
     def cut(
-        self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray, forbidden: CollisionKind | None
+        self,
+        tool: ToolSetup,
+        start_mm: FloatArray,
+        end_mm: FloatArray,
+        forbidden: CollisionKind | None,
     ) -> Iterator[Touch]:
         """Move the cutting part in a straight line: it removes material, now or a little later.
 
@@ -139,12 +156,13 @@ class Material:
             The touch, if it is forbidden and material was met.
         """
         if forbidden is None:
-            self._wait(Sweep(tool.cutter, start_mm, end_mm), tool.number)
+            self._waiting.append(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number, False))
+            self._subtract(self._due([w.sweep.length_mm for w in self._waiting]))
             return
         self.flush()
         met = self._removal.cut(Sweep(tool.guard, start_mm, end_mm), apply=False)
         if met > 0.0:
-            self._waiting.append((Sweep(tool.cutter, start_mm, end_mm), tool.number))
+            self._waiting.append(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number, False))
             yield Touch(forbidden, met, self._subtract(1))
 
     def touches(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> Iterator[Touch]:
@@ -153,17 +171,24 @@ class Material:
             if self._meets(body, start_mm, end_mm):
                 sweep = Sweep(body, start_mm, end_mm)
                 volume = self._removal.cut(sweep, apply=False)
-                if volume > 0.0 and self._waiting:
+                if volume > 0.0 and (self._waiting or self._removal.left is not None):
                     self.flush()
                     volume = self._removal.cut(sweep, apply=False)
                 if volume > 0.0:
                     yield Touch(kind, volume, volume)
 
-    def _wait(self, sweep: Sweep, tool: int) -> None:
-        self._waiting.append((sweep, tool))
-        done = self._due([s.length_mm for s, _ in self._waiting])
-        if done:
-            self._subtract(done)
+    def add_chord(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> None:
+        """Move the cutting part along a chord; it waits until `settle` subtracts it together with those before it."""
+        self._waiting.append(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number, True))
+
+    def settle(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> None:
+        """Subtract everything that waits, if that is much.
+
+        Args:
+            tool, start_mm, end_mm: the chord that will be added next.
+        """
+        if len(self._waiting) >= CHORDS_TOGETHER:
+            self._subtract(len(self._waiting), Sweep(tool.cutter, start_mm, end_mm))
 
     def _due(self, lengths_mm: Sequence[float]) -> int:
         """How many sweeps, of those that wait, are to be subtracted now; 0 while they are too few.
@@ -180,6 +205,9 @@ class Material:
 
     def flush(self) -> None:
         """Subtract everything that waits."""
+        left = self._removal.left
+        if left is not None and not self._waiting:
+            self._waiting.append(_Waiting(left, self._last_tool, False))
         self._subtract(len(self._waiting))
 
     def volume_inside(self, tool: ToolSetup, tip_mm: FloatArray) -> float:
@@ -187,11 +215,24 @@ class Material:
         self.flush()
         return self._removal.cut(Sweep(tool.guard, tip_mm, tip_mm), apply=False)
 
-    def _subtract(self, count: int) -> float:
-        """Subtract the sweeps that have waited longest; returns the removed volume, mm3."""
+    def _subtract(self, count: int, after: Sweep | None = None) -> float:
+        """Subtract the sweeps that have waited longest; returns the removed volume, mm3.
+
+        Args:
+            after: the sweep that comes next, where nothing else waits.
+        """
         taken = [self._waiting.popleft() for _ in range(count)]
-        volumes = self._removal.cut_all([sweep for sweep, _ in taken]) if taken else np.zeros(0)
-        for (sweep, tool), volume in zip(taken, volumes.tolist(), strict=True):
+        if not taken:
+            return 0.0
+        sweeps: list[Sweep | Chain] = []
+        tools: list[int] = []
+        for (tool, chord), together in groupby(taken, key=lambda w: (w.tool, w.chord)):
+            single = [w.sweep for w in together]
+            sweeps.extend(chained(single) if chord else single)
+            tools.extend([tool] * (len(sweeps) - len(tools)))
+        volumes = self._removal.cut_all(sweeps, after=self._waiting[0].sweep if self._waiting else after)
+        self._last_tool = tools[-1]
+        for sweep, tool, volume in zip(sweeps, tools, volumes.tolist(), strict=True):
             if volume > 0.0:
                 self.removed_mm3[tool] = self.removed_mm3.get(tool, 0.0) + volume
                 self._changed.append(sweep.bounds_mm)

@@ -28,15 +28,12 @@ class Preview:
     Args:
         grid: the patches, None to draw nothing.
         every_s: machine time between key frames.
-
-    Attributes:
-        every_s: as given.
     """
 
     def __init__(self, grid: PatchGrid | None, every_s: float) -> None:
         self._grid = grid
         self._next_s = every_s
-        self.every_s = every_s
+        self._every_s = every_s
 
     @classmethod
     def of(cls, workpiece: TriSlices, pitch_mm: float | None, every_s: float) -> Preview:
@@ -55,7 +52,7 @@ class Preview:
 
     def parts(self, start_mm: FloatArray, end_mm: FloatArray, duration_s: float) -> Iterator[Piece]:
         """A straight motion in parts that take no longer than the time between key frames."""
-        count = max(1, math.ceil(duration_s / self.every_s)) if np.any(end_mm != start_mm) else 1
+        count = max(1, math.ceil(duration_s / self._every_s)) if np.any(end_mm != start_mm) else 1
         ends = [start_mm + (end_mm - start_mm) * (i / count) for i in range(count)] + [end_mm]
         for a, b in pairwise(ends):
             yield a, b, duration_s / count
@@ -70,7 +67,7 @@ class Preview:
     def frame(self, material: Material, t_s: float) -> Iterator[WorkpiecePatch]:
         """The changed patches, if it is time for the next key frame."""
         if t_s >= self._next_s:
-            self._next_s = t_s + self.every_s
+            self._next_s = t_s + self._every_s
             yield from self.changes(material, t_s)
 
     def changes(self, material: Material, t_s: float) -> Iterator[WorkpiecePatch]:

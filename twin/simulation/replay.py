@@ -17,17 +17,17 @@ from typing import Self
 import numpy as np
 
 from gcode.events import Event
-from twin.arrays import FloatArray
 from twin.job import Job
 from twin.motion.path import Move
 from twin.record import Record, RunSummary
+from twin.simulation.chords import chord_groups, chord_steps, chords_are_steps
 from twin.simulation.clock import Turned
 from twin.simulation.contacts import Contacts, box_of, forbidden
 from twin.simulation.preview import Piece
 from twin.simulation.setup import Setup, prepare
 from twin.simulation.short_motions import Joined, joined
 from twin.simulation.solve import Solved
-from twin.simulation.steps import chord_groups, chord_steps, chords_are_steps, piece_steps, positions
+from twin.simulation.steps import piece_steps, positions
 from twin.simulation.tools import ToolSetup
 from twin.workpiece.to_mesh import SurfaceMesh, surface_mesh
 from twin.workpiece.trislice import TriSlices
@@ -135,11 +135,14 @@ def _cut_chords(
 ) -> Iterator[Record]:
     """Chords of an arc, each a step; steps are solved together until slices change."""
     material, recorder = setup.material, setup.recorder
-    for chords in chord_groups(move, pieces, setup):
+    for chords in chord_groups(move, pieces, tool, setup):
         steps = chord_steps(move, chords, tool, setup)
         for (start, end, _), step in zip(chords, steps, strict=True):
             yield step
-            contacts.add(material.cut(tool, start, end, None), step.t_s, start)
+            if tool.forces is None:
+                material.add_chord(tool, start, end)
+            else:
+                contacts.add(material.cut(tool, start, end, None), step.t_s, start)
             yield from setup.preview.frame(material, recorder.t_s)
             contacts.add(material.touches(tool, start, end), step.t_s, start)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from itertools import islice
 
 import numpy as np
@@ -22,9 +22,9 @@ from twin.simulation.solve import Solved, StepSolver, one_ahead
 from twin.simulation.tools import ToolSetup
 
 #: Steps of a motion that are solved together, whatever the number of threads.
-_STEPS_TOGETHER = 64
+STEPS_TOGETHER = 64
 #: Most steps of one motion, and most force samples of one step and of steps that are solved together.
-_MOST_STEPS, _MOST_SAMPLES, _SAMPLES_TOGETHER = 10_000_000, 5_000_000, 1_000_000
+_MOST_STEPS, _MOST_SAMPLES, SAMPLES_TOGETHER = 10_000_000, 5_000_000, 1_000_000
 
 
 def positions(move: Move, tool: ToolSetup, ends: FloatArray, feed: FloatArray, pending: SweptVolume) -> Positions:
@@ -51,7 +51,7 @@ def piece_steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iter
     step_s = duration_s / count
     per_step = setup.recorder.samples_in(step_s, move.spindle_rpm)
     refuse_endless(move, count, per_step, setup)
-    together = max(1, min(_STEPS_TOGETHER, int(_SAMPLES_TOGETHER / max(1.0, per_step))))
+    together = max(1, min(STEPS_TOGETHER, int(SAMPLES_TOGETHER / max(1.0, per_step))))
     ends = start + along * (np.arange(count + 1) / count)[:, None]
     pending = setup.material.pending(tool.number, start, along / length)
     turns = setup.recorder.clock.turns(setup.recorder.t_s, step_s, move.spindle_rpm)
@@ -59,60 +59,6 @@ def piece_steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iter
     for first, turned, answer in one_ahead(begun):
         for i, (samples, solved) in enumerate(zip(turned, answer(), strict=True), start=first):
             yield setup.recorder.step(move, ends[i], ends[i + 1], step_s, samples, solved)
-
-
-def chord_steps(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup) -> Iterator[Step]:
-    """The steps of consecutive chords of a feed motion, one for each, solved together.
-
-    Each chord finds the material as those before it leave it: their sweeps are excluded exactly. The slices must stay
-    as they are until the last step has been passed on.
-
-    Args:
-        chords: none longer than a step.
-    """
-    recorder, material = setup.recorder, setup.material
-    turned, t_s = [], recorder.t_s
-    for _, _, duration_s in chords:
-        turned.append(recorder.clock.advance(t_s, duration_s, move.spindle_rpm))
-        t_s += duration_s
-    ends = np.array([chords[0][0], *(end for _, end, _ in chords)])
-    pending = material.pending_chords(tool, ends)
-    along = np.diff(ends, axis=0)
-    n = len(chords)
-    at = Positions(
-        0.5 * (ends[:-1] + (ends[:-1] + along)),
-        along / np.array([np.linalg.norm(one) for one in along])[:, None],
-        np.full(n, move.feed_mm_min / 60.0),
-        np.full(n, move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)),
-        np.arange(material.waiting, material.waiting + n, dtype=np.int64),
-    )
-    angles = [angle for _, angle in turned]
-    answer = setup.solver.solve(tool, at, angles, np.full(n, move.spindle_rpm), pending)()
-    for (start, end, duration_s), samples, solved in zip(chords, turned, answer, strict=True):
-        yield recorder.step(move, start, end, duration_s, samples, solved)
-
-
-def chords_are_steps(move: Move, setup: Setup) -> bool:
-    """Whether each chord of an arc is one step: neither longer than one nor divided at key frames."""
-    corners = move.corners_mm(setup.step_mm, setup.tolerance.chord_mm)
-    lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
-    longest, total = float(lengths.max()), float(lengths.sum())
-    if not lengths.min() > 0.0 or longest > setup.step_mm:
-        return False
-    return move.duration_s * longest / total <= setup.preview.every_s
-
-
-def chord_groups(move: Move, pieces: Iterator[Piece], setup: Setup) -> Iterator[list[Piece]]:
-    """The pieces of a motion in groups that `chord_steps` can solve together; each must be cut before the next."""
-    held = list(islice(pieces, _STEPS_TOGETHER))
-    while held:
-        lengths = [float(np.linalg.norm(end - start)) for start, end, _ in held]
-        samples = max(setup.recorder.samples_in(duration_s, move.spindle_rpm) for _, _, duration_s in held)
-        refuse_endless(move, len(held), samples, setup)
-        most = max(1, int(_SAMPLES_TOGETHER / max(1.0, samples)))
-        count = setup.material.until_subtracted(lengths[:most])
-        yield held[:count]
-        held = [*held[count:], *islice(pieces, count)]
 
 
 def refuse_endless(move: Move, steps: int, samples: float, setup: Setup) -> None:

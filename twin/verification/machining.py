@@ -11,6 +11,7 @@ from gcode.events import ToolChange
 from twin.job import Job
 from twin.motion.path import Move
 from twin.record import Collision
+from twin.simulation.chords import chain_groups
 from twin.simulation.contacts import Contacts, box_of, collision_record, forbidden
 from twin.simulation.material import Material
 from twin.simulation.setup import prepare
@@ -65,7 +66,14 @@ def machined(
 def _cut(material: Material, tool: ToolSetup, move: Move, chord_mm: float, t_s: float) -> Contacts:
     """Remove the material of one motion and return its forbidden contacts."""
     contacts = Contacts()
-    for start, end in pairwise(move.corners_mm(math.inf, chord_mm)):
+    pieces = ((start, end, 0.0) for start, end in pairwise(move.corners_mm(math.inf, chord_mm)))
+    if move.arc is not None and forbidden(move) is None:
+        for chords in chain_groups(pieces, tool, material):
+            for start, end, _ in chords:
+                material.add_chord(tool, start, end)
+                contacts.add(material.touches(tool, start, end), t_s, start)
+        return contacts
+    for start, end, _ in pieces:
         contacts.add(material.cut(tool, start, end, forbidden(move)), t_s, start)
         contacts.add(material.touches(tool, start, end), t_s, start)
     return contacts

@@ -5,22 +5,36 @@ The polygon arithmetic is in `twin.geometry.column_cells.cut_kernels`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import NO_TOPS, Tops
+from twin.motion.chain import Chain, follows
 from twin.motion.sweep import Sweep
+from twin.workpiece.retraced import Retraced
 from twin.workpiece.trislice import TriSlices
 
 #: Families in the order in which threads take them: those across the tool axis cost most.
 _ORDER = (0, 1, 2)
 #: Sweeps no longer than this many pitches are cut only where there is material in their way.
 _SHORT_PITCHES = 3.0
+#: After this many chains that left the volume at their end to the next sweep, one is cut whole.
+_CHAINS_LEFT = 3
+
+
+class _Cut(NamedTuple):
+    """A sweep to be subtracted, and the parts of it that need not be; see `Sweep.strips` and `Chain.strips`."""
+
+    sweep: Sweep | Chain
+    start_is_cut: bool
+    end_is_left: bool
+    band_mm: float
 
 
 class Removal:
@@ -33,7 +47,9 @@ class Removal:
     def __init__(self, workpiece: TriSlices, chord_mm: float, threads: int = 2) -> None:
         self.workpiece = workpiece
         self._chord_mm = chord_mm
-        self._last: tuple[TriSlices, Sweep] | None = None
+        self._last: tuple[TriSlices, Sweep | Chain] | None = None
+        self._left = 0
+        self._retraced = Retraced()
         self._pool = ThreadPoolExecutor(max_workers=threads) if threads > 1 else None
 
     def cut(self, sweep: Sweep, *, apply: bool = True) -> float:
@@ -44,38 +60,83 @@ class Removal:
         """
         return float(self.cut_all([sweep], apply=apply)[0])
 
-    def cut_all(self, sweeps: Sequence[Sweep], *, apply: bool = True) -> FloatArray:
+    def cut_all(self, sweeps: Sequence[Sweep | Chain], *, apply: bool = True, after: Sweep | None = None) -> FloatArray:
         """Take the volumes of several sweeps out, one after the other.
+
+        Args:
+            after: the sweep that will be subtracted next, where that is known: chains may leave it some of their
+                volume, see `twin.motion.chain`.
 
         Returns:
             Removed volume of each, as `cut` gives it.
         """
-        last = self._last[1] if self._last is not None and self._last[0] is self.workpiece else None
         levels = self.workpiece.levels()
+        cuts = self._cuts(sweeps, after) if apply else [_Cut(sweep, False, False, math.inf) for sweep in sweeps]
 
         def family(axis: int) -> list[float]:
-            earlier = (last, *sweeps[:-1]) if apply else [None] * len(sweeps)
-            return [
-                self._cut_family(axis, sweep, levels, apply, sweep.follows(before)) if self._touched(sweep) else 0.0
-                for sweep, before in zip(sweeps, earlier, strict=True)
-            ]
+            return [self._cut_family(axis, cut, levels, apply) if self._touched(cut.sweep) else 0.0 for cut in cuts]
 
         volumes = list(map(family, _ORDER) if self._pool is None else self._pool.map(family, _ORDER))
         if apply and sweeps:
             self._last = (self.workpiece, sweeps[-1])
         return np.asarray(np.sum(volumes, axis=0) / 3.0)
 
-    def _touched(self, sweep: Sweep) -> bool:
+    @property
+    def left(self) -> Sweep | None:
+        """The body at rest at the end of the last chain, if that was left to the sweep that comes next."""
+        if self._left == 0 or self._last is None:
+            return None
+        last = self._last[1]
+        return Sweep(last.body, last.end_mm, last.end_mm)
+
+    def _cuts(self, sweeps: Sequence[Sweep | Chain], after: Sweep | None) -> list[_Cut]:
+        """Several sweeps, each with the parts of it that need not be cut.
+
+        The body between two chains that go down is left to the second, which goes deeper there; of two sweeps that
+        rise, or are cut one by one, the first cuts it.
+        """
+        before = self._last[1] if self._last is not None and self._last[0] is self.workpiece else None
+        cuts = []
+        for sweep, following in zip(sweeps, (*sweeps[1:], after), strict=True):
+            start_is_cut = self._left == 0 and follows(sweep, before)
+            left = isinstance(sweep, Chain) and sweep.descends and self._left < _CHAINS_LEFT
+            left = left and following is not None and follows(following, sweep)
+            band_mm = math.inf
+            if isinstance(sweep, Chain):
+                band_mm = self._retraced.band_mm(sweep)
+                self._retraced.add(sweep, end_is_left=left)
+            self._left = self._left + 1 if left else 0
+            cuts.append(_Cut(sweep, start_is_cut, left, band_mm))
+            before = sweep
+        return cuts
+
+    def _touched(self, sweep: Sweep | Chain) -> bool:
         low, high = sweep.bounds_mm
         return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
 
-    def _cut_family(self, axis: int, sweep: Sweep, levels: int, apply: bool, follows: bool) -> float:
-        piece = self.workpiece
+    def _cut_family(self, axis: int, cut: _Cut, levels: int, apply: bool) -> float:
+        piece, sweep = self.workpiece, cut.sweep
         low, pitch = float(piece.low_mm[axis]), float(piece.pitch_mm[axis])
         count = levels if axis == 2 else piece.count(axis)
         top = float(piece.low_mm[2] + (levels + 0.5) * piece.pitch_mm[2])  # where the next plane is, which is empty
-        tops = self._tops(axis, sweep, count) if follows and axis != 2 else NO_TOPS
-        strips = sweep.strips(axis, low, pitch, count, self._chord_mm, start_is_cut=follows, top_mm=top, tops=tops)
+        if isinstance(sweep, Chain):
+            strips = sweep.strips(
+                axis,
+                low,
+                pitch,
+                count,
+                self._chord_mm,
+                start_is_cut=cut.start_is_cut,
+                end_is_left=cut.end_is_left,
+                top_mm=top,
+                band_mm=cut.band_mm,
+            )
+        else:
+            known = cut.start_is_cut and axis != 2
+            tops = self._tops(axis, sweep, count) if known else NO_TOPS
+            strips = sweep.strips(
+                axis, low, pitch, count, self._chord_mm, start_is_cut=cut.start_is_cut, top_mm=top, tops=tops
+            )
         return float(np.sum(piece.cut(axis, strips, apply=apply)) * pitch)
 
     def _tops(self, axis: int, sweep: Sweep, count: int) -> Tops:

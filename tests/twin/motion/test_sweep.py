@@ -11,7 +11,8 @@ import shapely
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import Tops
 from twin.motion.sweep import Body, Sweep, SweptVolume
-from twin.tools.shape import ToolShape, tool_shape
+from twin.motion.swept_kernels import Fronts
+from twin.tools.shape import ToolKind, ToolShape, tool_shape
 
 SHAPES = {
     "ball": tool_shape("ball", 8.0, 6.0),
@@ -141,3 +142,21 @@ def test_sections_are_refined_only_where_there_is_material_in_the_way() -> None:
     # over the material the strips are as without that knowledge
     kept = {tuple(node) for node in found.nodes.tolist()}
     assert {tuple(node) for node in plain.nodes.tolist() if 1.0 <= node[0] <= 2.0} <= kept
+
+
+@pytest.mark.parametrize("kind", ["flat", "ball", "bull", "taper"])
+def test_sweeps_behind_the_tangent_plane_of_a_point_are_not_looked_at_and_do_not_hold_it(kind: ToolKind) -> None:
+    shape = tool_shape(kind, 4.0, 8.0, 1.0, 8.0)
+    body, tip = Body.of(shape, chord_mm=0.001), np.array((3.0, 2.0, -1.0))
+    angle, z = (a.ravel() for a in np.meshgrid(np.arange(0.0, 6.0, 0.7), np.arange(0.1, 6.0, 1.4)))
+    radius = shape.radius_mm(z)
+    points = tip + np.column_stack((radius * np.cos(angle), radius * np.sin(angle), z))
+    before = [Sweep(body, tip - (1.0, 0.3 - 0.2 * i, 0.02), tip - (0.1, 0.1, 0.01)) for i in range(3)]
+    fronts = Fronts(shape.meridian, tip[None, :], np.zeros(len(points), dtype=np.int32))
+    left = [np.ones(len(points), dtype=np.bool_) for _ in range(2)]
+    SweptVolume(before, [0.0011] * 3).clear(points, left[0], 0.0, None, fronts)
+    SweptVolume(before).clear(points, left[1], 0.0)
+    assert np.array_equal(left[0], left[1])
+    assert left[0].any()
+    assert not left[0].all()
+    assert not np.any(left[0][np.cos(angle) < -0.9])

@@ -1,0 +1,165 @@
+"""Feed along an arc: chords, each a step, solved together and cut together.
+
+With forces, the steps of chords are solved together as long as the slices stay as they are; chords are cut one after
+the other, so that results are those of straight motions along them.
+
+Without forces, chords are cut in chains of up to a quarter turn. Engagement is found at some of them, and at those
+between only where it changes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import islice, pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.arrays import FloatArray
+from twin.cutting.engagement import Positions
+from twin.motion.path import Move
+from twin.motion.sweep import SweptVolume
+from twin.record import Engagement, Step
+from twin.simulation.material import Material
+from twin.simulation.preview import Piece
+from twin.simulation.setup import Setup
+from twin.simulation.solve import Solved
+from twin.simulation.steps import SAMPLES_TOGETHER, STEPS_TOGETHER, refuse_endless
+from twin.simulation.tools import ToolSetup
+
+#: Chords that turn by no more than this do not reach the front of the tool at those after them.
+_TURN_RAD = 0.5 * math.pi * (1.0 + 1e-9)
+#: Most chords from one whose engagement is found to the next, and their length in tool radii.
+_APART, _APART_RADII = 8, 0.25
+#: Engagements are alike when width, arc and removal rate differ by no more than this part.
+_ALIKE = 0.05
+
+
+def chords_are_steps(move: Move, setup: Setup) -> bool:
+    """Whether each chord of an arc is one step."""
+    corners = move.corners_mm(setup.step_mm, setup.tolerance.chord_mm)
+    lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+    return bool(lengths.min() > 0.0 and lengths.max() <= setup.step_mm)
+
+
+def chord_groups(move: Move, pieces: Iterator[Piece], tool: ToolSetup, setup: Setup) -> Iterator[list[Piece]]:
+    """The chords of an arc in groups for `chord_steps`; each must be cut before the next is taken."""
+    if tool.forces is None:
+        yield from chain_groups(pieces, tool, setup.material)
+        return
+    held = list(islice(pieces, STEPS_TOGETHER))
+    while held:
+        samples = max(setup.recorder.samples_in(duration_s, move.spindle_rpm) for _, _, duration_s in held)
+        refuse_endless(move, len(held), samples, setup)
+        most = max(1, int(SAMPLES_TOGETHER / max(1.0, samples)))
+        count = setup.material.until_subtracted(_along(held[:most])[1].tolist())
+        yield held[:count]
+        held = [*held[count:], *islice(pieces, count)]
+
+
+def chain_groups(pieces: Iterator[Piece], tool: ToolSetup, material: Material) -> Iterator[list[Piece]]:
+    """Chords in groups that become chains; each must be added to the material before the next is taken."""
+    held = list(islice(pieces, STEPS_TOGETHER))
+    while held:
+        material.settle(tool, *held[0][:2])
+        count = _in_one_direction(held)
+        yield held[:count]
+        held = [*held[count:], *islice(pieces, count)]
+
+
+def _in_one_direction(chords: Sequence[Piece]) -> int:
+    """How many of the first chords go on in one direction along each axis and turn by no more than `_TURN_RAD`."""
+    along, lengths = _along(chords)
+    sense = np.zeros(3)
+    for count, one in enumerate(np.sign(along)):
+        if np.any(one * sense < 0.0) or along[count] @ along[0] < math.cos(_TURN_RAD) * lengths[count] * lengths[0]:
+            return count
+        sense = np.where(sense == 0.0, one, sense)
+    return len(chords)
+
+
+def _along(chords: Sequence[Piece]) -> tuple[FloatArray, FloatArray]:
+    """From the start to the end of each chord, shape (n, 3), and the lengths, shape (n,)."""
+    along = np.array([end - start for start, end, _ in chords])
+    return along, np.array([float(np.linalg.norm(one)) for one in along])
+
+
+def chord_steps(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup) -> Iterator[Step]:
+    """The steps of consecutive chords of a feed motion, one for each.
+
+    The slices must stay as they are until the last step has been passed on.
+    """
+    recorder = setup.recorder
+    turned, t_s = [], recorder.t_s
+    for _, _, duration_s in chords:
+        turned.append(recorder.clock.advance(t_s, duration_s, move.spindle_rpm))
+        t_s += duration_s
+    if tool.forces is None:
+        solved = _solved_where_it_changes(move, chords, tool, setup)
+    else:
+        ends = np.array([chords[0][0], *(end for _, end, _ in chords)])
+        at = _middles(move, chords, tool, np.arange(len(chords)) + setup.material.waiting)
+        angles, rpm = [angle for _, angle in turned], np.full(len(chords), move.spindle_rpm)
+        solved = setup.solver.solve(tool, at, angles, rpm, setup.material.pending_chords(tool, ends))()
+    for (start, end, duration_s), samples, own in zip(chords, turned, solved, strict=True):
+        yield recorder.step(move, start, end, duration_s, samples, own)
+
+
+def _middles(move: Move, chords: Sequence[Piece], tool: ToolSetup, waiting: NDArray[np.int64]) -> Positions:
+    """The middles of chords; ``waiting`` is how many pending sweeps count for each."""
+    starts = np.array([start for start, _, _ in chords])
+    along, lengths = _along(chords)
+    n = len(chords)
+    return Positions(
+        0.5 * (starts + (starts + along)),
+        along / lengths[:, None],
+        np.full(n, move.feed_mm_min / 60.0),
+        np.full(n, move.feed_mm_min / (abs(move.spindle_rpm) * tool.teeth)),
+        waiting,
+    )
+
+
+def _solved_where_it_changes(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup) -> list[Solved]:
+    """The engagement of each chord, found at some of them; others take that of the nearest if those next to them agree.
+
+    The sweeps of the chords themselves are not excluded: none reaches the front of the tool at a later one.
+    """
+    pending = setup.material.pending_chords(tool, np.empty((0, 3)))
+    n = len(chords)
+    found = np.unique(np.append(np.arange(0, n, _apart(chords, tool)), n - 1))
+    solved = dict(zip(found.tolist(), _solve(move, [chords[i] for i in found], tool, setup, pending), strict=True))
+    between = [
+        i
+        for a, b in pairwise(found.tolist())
+        if not _alike(solved[a].engagement, solved[b].engagement)
+        for i in range(a + 1, b)
+    ]
+    if between:
+        solved |= zip(between, _solve(move, [chords[i] for i in between], tool, setup, pending), strict=True)
+    known = np.array(sorted(solved))
+    nearest = known[np.argmin(np.abs(np.arange(n)[:, None] - known), axis=1)]
+    return [solved[i] for i in nearest.tolist()]
+
+
+def _apart(chords: Sequence[Piece], tool: ToolSetup) -> int:
+    """How many chords lie between those whose engagement is found first."""
+    longest = float(_along(chords)[1].max())
+    return max(1, min(_APART, int(_APART_RADII * tool.cutter.radius_mm / longest)))
+
+
+def _alike(a: Engagement, b: Engagement) -> bool:
+    """Whether two engagements are nearly the same."""
+    pairs = (
+        (a.radial_width_mm, b.radial_width_mm),
+        (a.arc_rad, b.arc_rad),
+        (a.removal_rate_mm3_s, b.removal_rate_mm3_s),
+    )
+    return a.cutting == b.cutting and all(abs(x - y) <= _ALIKE * max(x, y) for x, y in pairs)
+
+
+def _solve(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup, pending: SweptVolume) -> list[Solved]:
+    """The engagement of chords, of which none is among the pending sweeps."""
+    at = _middles(move, chords, tool, np.full(len(chords), len(pending), dtype=np.int64))
+    nothing = [np.zeros(0)] * len(chords)
+    return setup.solver.solve(tool, at, nothing, np.full(len(chords), move.spindle_rpm), pending)()
