@@ -24,6 +24,9 @@ from twin.cutting.equation_kernels import (
 )
 from twin.jit import helper, njit
 
+#: Coefficients of the linear law, the first of `Coefficients`.
+LINEAR = 6
+
 
 class Steps(NamedTuple):
     """Steps to be summed.
@@ -174,7 +177,7 @@ def sum_unit_forces(
     rows: RowAngles,
     out: FloatArray,
 ) -> None:
-    """Forces on the tool that `sum_forces` finds when one coefficient is 1 and the others are 0, all in one pass.
+    """Forces on the tool under the linear law when one coefficient is 1 and the others are 0, all in one pass.
 
     Args:
         share, turn: the engagement map, shape (rows, elements).
@@ -187,7 +190,7 @@ def sum_unit_forces(
     column = np.empty(count + 1)
     for s in range(samples):
         for axis in range(3):
-            for c in range(6):
+            for c in range(LINEAR):
                 out[s, axis, c] = 0.0
     for i in range(elements):
         if not _gather(share, i, column):
@@ -212,7 +215,7 @@ def sum_unit_forces(
                         chip = min(chip, uncut_chip_thickness(feed_per_tooth, n_dot_f, out_by))
                     if chip > step.least_chip:
                         db = engaged * edges.length[i]
-                        for c in range(6):
+                        for c in range(LINEAR):
                             size = db if c % 2 else chip * db
                             force = EdgeForce(
                                 size if c < 2 else 0.0, size if 1 < c < 4 else 0.0, size if c > 3 else 0.0
@@ -223,7 +226,7 @@ def sum_unit_forces(
                             out[s, 2, c] += z
     for s in range(samples, len(out)):
         for axis in range(3):
-            for c in range(6):
+            for c in range(LINEAR):
                 out[s, axis, c] = out[s - step.period, axis, c]
 
 

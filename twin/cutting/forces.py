@@ -17,7 +17,7 @@ from twin.cutting.coefficients import CuttingCoefficients
 from twin.cutting.edge_arrays import Flutes
 from twin.cutting.engagement import EngagementMap, EngagementMaps, edge_arrays, row_angles
 from twin.cutting.equation_kernels import Coefficients
-from twin.cutting.force_kernels import Step, Steps, sum_forces_of_steps, sum_unit_forces
+from twin.cutting.force_kernels import LINEAR, Step, Steps, sum_forces_of_steps, sum_unit_forces
 from twin.tolerance import Tolerance
 from twin.tools.edges import CuttingEdges
 
@@ -62,12 +62,14 @@ class ForceModel:
     def unit_forces(
         self, spindle_rad: FloatArray, sense: int, feed: FloatArray, feed_per_rev_mm: float, engagement: EngagementMap
     ) -> FloatArray:
-        """Forces for each coefficient being 1 and the others 0, whatever those of the model; see `forces`.
+        """Forces under the linear law for each coefficient being 1 and the others 0, whatever those of the model.
+
+        Arguments are those of `forces`.
 
         Returns:
             Shape (n, 3, 6): Fx, Fy, Fz on the tool per unit of the coefficients, in the order of `Coefficients`.
         """
-        out = np.empty((len(spindle_rad), 3, len(Coefficients._fields)))
+        out = np.empty((len(spindle_rad), 3, LINEAR))
         step = Step(
             first_rad=float(spindle_rad[0]),
             sense=float(sense),

@@ -33,7 +33,7 @@ def test_the_page_has_every_key() -> None:
 def test_the_command_lines_page_has_every_option() -> None:
     page = (ROOT / "docs" / "command-line.md").read_text().split("## Options of `twin identify`")[1].split("\n## ")[0]
     assert f"<!-- options of {Fit.__module__}.{Fit.__name__} -->" in page
-    source = (ROOT / "twin" / "cli" / "commands" / "identify.py").read_text()
+    source = (ROOT / "twin" / "cli" / "commands" / "logs" / "identify.py").read_text()
     options = {*re.findall(r'"(--[a-z/-]+)"', source), "--plot"}
     assert options == {"--out", "--plot", "--force", "--json", "--verbose"}
     assert {o for o in options if f"`{o}" not in page} == set()
