@@ -123,6 +123,7 @@ class _Drafting:
         self.dialect = dialect.name
         self.dialect_reason = "" if notice is None else notice.text.partition(": ")[2]
         self.others = [name for name in DIALECTS if name != self.dialect] if given.dialect == "auto" else []
+        self.wear = False
         self.more: dict[str, Any] = {"m_codes": dict.fromkeys(given.m_codes, "none")}
 
     def draft(self) -> JobDraft:
@@ -134,6 +135,11 @@ class _Drafting:
         if 0 in cuts.tools:
             tool = self._first_tool()
             cuts = self._run(tool)
+        if 0 in cuts.tools:
+            line = int(cuts.feed.line[cuts.feed.tool == 0][0])
+            raise ReplayError(
+                f"{self.file}:{line}: feed motion with T0, without a tool; expected a tool change before it"
+            )
         tools = self._tools(cuts)
         if cuts.compensated:
             cuts = self._compensated(tool, cuts, tools)
@@ -158,7 +164,7 @@ class _Drafting:
             assumed=tuple(self.notes.lines()),
             open=tuple(self.notes.open),
             warnings=tuple(self.notes.warnings),
-            estimate=estimate(cuts, stock, fine, forces=self._forces(tools)),
+            estimate=estimate(cuts, stock, fine, tools, forces=self._forces(tools)),
             tables=tuple(tables),
         )
 
@@ -216,15 +222,21 @@ class _Drafting:
         for one in tools:
             radii[one.number] = 0.5 * one.diameter_mm
             radii |= dict.fromkeys(cuts.compensated.get(one.number, ()), 0.5 * one.diameter_mm)
+        try:
+            compensated = self._run(tool, radii)
+        except GcodeError as error:
+            self.wear = True
+            self.notes.warnings.append(
+                f"cutter compensation with the tools' radii is refused ({error.place}: {error.problem}): they are "
+                "taken as 0, as for a program posted with the path of the tool centre; or a comment states a wrong "
+                "diameter"
+            )
+            return cuts
         for number in sorted(cuts.compensated):
             offsets = ", ".join(f"D{d}" for d in sorted(cuts.compensated[number]))
-            radius = radii.get(number, 0.0)
-            self.notes.assume(
-                f"T{number}",
-                f"radius {radius:g} mm in {offsets}",
-                "cutter compensation; a post may expect the wear only",
-            )
-        return self._run(tool, radii)
+            reason = "cutter compensation; a post may expect the wear only"
+            self.notes.assume(f"T{number}", f"radius {radii.get(number, 0.0):g} mm in {offsets}", reason)
+        return compensated
 
     def _stock(self, cuts: Cuts, tools: list[DraftTool]) -> StockBox:
         radii = {t.number: 0.5 * t.diameter_mm for t in tools}
@@ -287,6 +299,8 @@ class _Drafting:
         for tool in tools:
             cutting = own if own is not None and tool.cuts else None
             tables.append(tool_table(tool, max(0.0, top_mm - lowest[tool.number]), cutting, self.notes))
+            if self.wear and tool.number in cuts.compensated:
+                tables[-1].add("offset_radius_mm", 0.0, "assumed: the program is posted for the wear only")
         return tables + self._offset_rows(cuts, tools)
 
     def _offset_rows(self, cuts: Cuts, tools: list[DraftTool]) -> list[DraftTable]:
@@ -306,6 +320,8 @@ class _Drafting:
             table.add("diameter_mm", rows[number].diameter_mm)
             table.add("teeth", 2)
             table.add("flute_length_mm", max(1.0, rows[number].diameter_mm))
+            if self.wear:
+                table.add("offset_radius_mm", 0.0)
             tables.append(table)
         return tables
 

@@ -6,6 +6,7 @@ those measured with ten programs. Sizes are within a factor of 1.5; times are th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -14,16 +15,16 @@ import numpy as np
 from twin.drafting.cuts import Cuts
 from twin.drafting.fineness import Fineness
 from twin.drafting.stock import StockBox
+from twin.drafting.tools import DraftTool
 from twin.number_format import clock
 
 #: Rate of rapids of a job that does not state one, mm/min.
 _RAPID_MM_MIN = 48_000.0
 #: Computing time of a run without its steps, s.
 _SETUP_S = 3.0
-#: Computing time of a step in the material without and with forces, and of a force sample, s.
-_STEP_S, _FORCED_STEP_S, _SAMPLE_S = 0.7e-3, 1.3e-3, 3e-6
-#: Computing time for each axial element of the edge and spindle angle of a step, s.
-_ELEMENT_S = 5e-8
+#: Computing time of a step in the material for each slice over the tool's diameter, without and with forces, and of a
+#: force sample, s.
+_SLICE_S, _FORCED_SLICE_S, _SAMPLE_S = 22e-6, 75e-6, 3e-6
 #: Bytes of a force sample, of a step, and of a cell of the surface as drawn: in the archive, and in a recording.
 _ARCHIVE_B = (58.0, 130.0, 70.0)
 _RECORDING_B = (72.0, 400.0, 80.0)
@@ -66,13 +67,14 @@ class Estimate:
         return asdict(self)
 
 
-def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, *, forces: bool) -> Estimate:
+def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftTool], *, forces: bool) -> Estimate:
     """Estimate a replay.
 
     Args:
         cuts: motions of the program.
         stock: the stock.
         fine: resolution of the replay.
+        tools: tools that cut.
         forces: whether forces are computed.
     """
     inside = cuts.feed.only(cuts.feed.low_mm[:, 2] < stock.high_mm[2])
@@ -84,9 +86,9 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, *, forces: bool) -> Es
     x, y, z = stock.size_mm.tolist()
     surface = 2.0 * (x * y + y * z + z * x)
     cells = surface / max(max(x, y, z) / _CELLS, fine.pitch_mm) ** 2
-    depth = float(stock.high_mm[2] - inside.low_mm[:, 2].min(initial=stock.high_mm[2]))
-    elements = depth / fine.axial_mm * 360.0 / fine.angle_deg
-    step_s = _FORCED_STEP_S + _ELEMENT_S * elements if forces else _STEP_S
+    sizes = {tool.number: tool.diameter_mm for tool in tools}
+    slices = np.array([sizes.get(number, 0.0) for number in inside.tool.tolist()]) / fine.pitch_mm
+    cut_slices = float((inside.length_mm * share / fine.pitch_mm * slices).sum())
     column = _FORCED_COLUMN_B if forces else _COLUMN_B
 
     def size(parts: tuple[float, float, float]) -> float:
@@ -97,7 +99,7 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, *, forces: bool) -> Es
         machine_time_s=float(cuts.feed.time_s.sum()) + cuts.dwell_s + cuts.rapid_mm / _RAPID_MM_MIN * 60.0,
         steps=steps,
         samples=samples,
-        computing_s=_SETUP_S + steps * step_s + samples * _SAMPLE_S,
+        computing_s=_SETUP_S + cut_slices * (_FORCED_SLICE_S if forces else _SLICE_S) + samples * _SAMPLE_S,
         memory_bytes=_PROGRAM_B + surface / fine.pitch_mm**2 * column,
         archive_bytes=size(_ARCHIVE_B),
         recording_bytes=size(_RECORDING_B),

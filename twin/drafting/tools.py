@@ -189,6 +189,10 @@ class _Assumed:
         self._table, self._subject, self._notes = table, f"T{tool.number}", notes
         self._noted = tool.kind in MILLS
 
+    def warn(self, text: str) -> None:
+        """Note a contradiction."""
+        self._notes.warnings.append(f"{self._subject}: {text}")
+
     def add(self, key: str, stated: Any, default: Any, words: str, reason: str = _NOT_STATED) -> Any:
         """Add a key; returns its value."""
         if stated is not None:
@@ -218,12 +222,17 @@ def _flutes(assumed: _Assumed, tool: DraftTool, depth_mm: float, half_deg: float
         assumed.add("flute_length_mm", None, round(max(length, 0.1), 3), "flute length {:g} mm", "up to its diameter")
         return
     usual = _FLUTE_DIAMETERS * size if tool.kind != "face mill" else _FACE_FLUTES_MM
+    rounded_mm = 0.5 * size if tool.kind == "ball" else tool.states.corner_radius_mm or 0.0
+    stated = tool.states.flute_length_mm
+    if stated is not None and stated < rounded_mm:
+        assumed.warn(f"its comment states a flute length of {stated:g} mm, less than its corner radius; it is not used")
+        stated = None
     needed = max(usual, depth_mm + _FLUTE_MORE_MM)
     length = min(math.ceil(needed / _FLUTE_STEP_MM) * _FLUTE_STEP_MM, 1000.0)
     reason = _NOT_STATED
     if length > usual + _FLUTE_STEP_MM:
         reason = f"the program goes {depth_mm:.4g} mm deep, {depth_mm / size:.2g} diameters"
-    assumed.add("flute_length_mm", tool.states.flute_length_mm, length, "flute length {:g} mm", reason)
+    assumed.add("flute_length_mm", stated, length, "flute length {:g} mm", reason)
 
 
 def _from_library(table: DraftTable, tool: DraftTool, depth_mm: float, notes: Notes) -> None:

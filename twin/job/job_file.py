@@ -210,6 +210,10 @@ class Tool(Table):
     length_mm: float = Field(
         default=0.0, ge=0.0, description="gauge length from tip to gauge point; it is also the tool length offset (H)"
     )
+    offset_radius_mm: Annotated[float | None, Key(unset="half the diameter")] = Field(
+        default=None,
+        description="radius in its offset for cutter compensation (D); 0 for a path of the tool centre",
+    )
     pitch_deg: Annotated[Annotated[tuple[float, ...], Strict(False)] | None, Key(unset="constant pitch")] = Field(
         default=None, description="variable pitch: angle from each tooth to the next, one per tooth, 360 in total"
     )

@@ -133,6 +133,11 @@ def _axis_rapids(program: Program, machine: Machine) -> FloatArray | None:
     return np.array(machine.axis_rapid_mm_min or (machine.rapid_mm_min,) * 3)
 
 
+def _offset_radius_mm(tool: Tool) -> float:
+    """Radius of cutter compensation."""
+    return 0.5 * tool.diameter_mm if tool.offset_radius_mm is None else tool.offset_radius_mm
+
+
 def _machine_settings(
     program: Program, machine: Machine, tools: Sequence[Tool], origin_mm: FloatArray, stock: SliceSet
 ) -> MachineSettings:
@@ -148,7 +153,7 @@ def _machine_settings(
         offsets={str(name): position for name, position in machine.offsets.items()},
         home_mm=home,
         start_mm=machine.start_mm or home,
-        tools={t.number: ToolOffset(length_mm=t.length_mm, radius_mm=t.diameter_mm / 2.0) for t in tools},
+        tools={t.number: ToolOffset(length_mm=t.length_mm, radius_mm=_offset_radius_mm(t)) for t in tools},
         tool=program.tool,
         arc_centres=program.arc_centres,
         block_delete=program.block_delete,

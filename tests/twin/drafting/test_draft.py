@@ -135,6 +135,16 @@ def test_offsets_with_other_numbers_than_the_tool_have_rows(tmp_path: Path) -> N
     assert draft.job().stock.box_mm.max[1] == pytest.approx(8.0)  # type: ignore[union-attr]
 
 
+def test_a_program_posted_for_wear_has_no_radius_in_its_offset(tmp_path: Path) -> None:
+    """The path of the centre has inside corners sharper than the tool."""
+    corner = "G41 D3 X9. F640.\nX40.\nG3 X41. Y1. J1.\nG1 Y30.\nG40 X30.\n"
+    draft = drafted(tmp_path, changed(("X40. F640.", corner)))
+    assert draft.job().tools[0].offset_radius_mm == 0.0
+    assert "cutter compensation with the tools' radii is refused" in draft.warnings[0]
+    with Replay(draft.job(), preview=False) as replay:
+        assert replay.planned_time_s > 0.0
+
+
 def test_arcs_with_absolute_centres_are_recognised(tmp_path: Path) -> None:
     arc = "X40. F640.\nG3 X40. Y20. I40. J10.\nG3 X30. Y10. I35. J15."
     draft = drafted(tmp_path, changed(("X40. F640.", arc)))
@@ -161,7 +171,17 @@ def test_wrong_values_are_refused(tmp_path: Path, values: dict[str, Any], error:
         drafted(tmp_path, **values)
 
 
+def test_a_flute_length_below_the_corner_radius_is_not_used(tmp_path: Path) -> None:
+    draft = drafted(tmp_path, changed(("T3 D=8. CR=0. - ZMIN=-2. - flat end mill", "T3 BALL 8 MM LOC 1")))
+    assert tool_of(draft)["flute_length_mm"] == 20.0
+    assert draft.warnings == (
+        "T3: its comment states a flute length of 1 mm, less than its corner radius; it is not used",
+    )
+
+
 def test_programs_that_cannot_be_drafted_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ReplayError, match=r"part\.nc:15: feed motion with T0"):
+        drafted(tmp_path, changed(("X40. F640.", "T0 M6\nX40. F640."), ("T3 M6\nG54", "T3 M6\nG54")))
     with pytest.raises(ReplayError, match="has no feed motion"):
         drafted(tmp_path, "G21\nG0 X1.\nM30\n")
     with pytest.raises(GcodeError, match="G999"):
