@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -102,7 +103,8 @@ class ProgramText:
         return after[0] if after else None
 
     def _moved(self, first: int, last: int) -> bool:
-        return any(first < line < last for line in self._motions)
+        after = bisect_right(self._motions, first)
+        return after < len(self._motions) and self._motions[after] < last
 
 
 def _comments(text: str) -> Iterator[str]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from twin.drafting.comments.program_text import Comment, Unit
-from twin.drafting.comments.tool_words import ToolStatement, described, length_mm, rounded
+from twin.drafting.comments.tool_words import ToolStatement, described, kind_in, length_mm, rounded
 
 _N = r"-?(?:\d+[ -]\d+/\d+|\d+/\d+|\d+\.?\d*|\.\d+)"
 
@@ -282,12 +282,24 @@ def tool_comments(comments: tuple[Comment, ...], unit: Unit) -> Iterator[ToolCom
     Args:
         unit: of the program, in which posts write lengths.
     """
+    known: dict[str, tuple[ToolPost, ToolStatement] | None] = {}
     for comment in comments:
-        for post in TOOL_POSTS:
-            states = post.read(comment.text, unit)
-            if states is not None and _says_enough(states, post):
-                yield ToolComment(comment=comment, post=post, states=states)
-                break
+        if comment.text not in known:
+            known[comment.text] = _read(comment.text, unit)
+        found = known[comment.text]
+        if found is not None:
+            yield ToolComment(comment=comment, post=found[0], states=found[1])
+
+
+def _read(text: str, unit: Unit) -> tuple[ToolPost, ToolStatement] | None:
+    """The first form that a comment is written in, with its values."""
+    for post in TOOL_POSTS:
+        if post is TOOL_POSTS[-1] and kind_in(text) is None:
+            return None
+        states = post.read(text, unit)
+        if states is not None and _says_enough(states, post):
+            return post, states
+    return None
 
 
 def _says_enough(states: ToolStatement, post: ToolPost) -> bool:

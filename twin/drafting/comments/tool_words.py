@@ -35,6 +35,8 @@ _KINDS: tuple[tuple[str, str], ...] = (
 )
 _KIND = tuple((kind, re.compile(rf"(?<![A-Z])(?:{words})(?![A-Z])")) for kind, words in _KINDS)
 
+_ANY_KIND = re.compile("|".join(words for _, words in _KINDS))
+
 _NUMBER = r"(?:\d+[ -]\d+/\d+|\d+/\d+|\d*\.\d+|\d+\.?)"
 _UNIT = r"(?:MM|MILLIMET\w*|INCH\w*|IN\b|''|\"|”|″)"
 #: A diameter, the surest mark first.
@@ -122,6 +124,8 @@ def length_mm(number: str, mark: str | None, unit: Unit) -> float:
 def kind_in(text: str) -> str | None:
     """The kind of tool that a text names, None for none."""
     upper = text.upper().replace("_", " ")
+    if not _ANY_KIND.search(upper):
+        return None
     return next((kind for kind, words in _KIND if words.search(upper)), None)
 
 
