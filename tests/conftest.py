@@ -11,8 +11,6 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from twin.cli.show import heartbeat
-
 #: More processes than this spend their time compiling the same kernels.
 MOST_PROCESSES = 8
 
@@ -33,10 +31,15 @@ settings.load_profile("steady")
 for name in ("FORCE_COLOR", "GITHUB_ACTIONS", "NO_COLOR", "PY_COLORS", "TTY_COMPATIBLE", "TTY_INTERACTIVE"):
     os.environ.pop(name, None)
 os.environ["TERM"] = "xterm"
-# nor on how long the machine takes
-heartbeat.EVERY_S = 3600.0
 # a shell ignores Ctrl-C for what it starts in the background, and the tests of Ctrl-C may run there
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_finish() -> None:
+    """What the command line prints does not depend on how long the machine takes, either."""
+    from twin.cli.show import heartbeat  # not before the number of threads is set
+
+    heartbeat.EVERY_S = 3600.0
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
