@@ -249,6 +249,21 @@ def _check_program(path: Path) -> object:
     return met
 
 
+def _posted() -> list[bytes]:
+    from support.nc_programs import SLOT
+
+    stock = "(Material Size)\n(X= 60.0, Y= 20.0, Z= 9.0)\n(1 = V-Bit {60 deg 12 mm})\n(STOCK/BLOCK,60,20,9,0,0,9)\n"
+    bull = "( T3 | 10. BULL ENDMILL 1. RAD | H3 | D3 | TOOL DIA. - 10. )\n"
+    arcs = f"{bull}G41 D3 G1 X5. F90.\nG3 X9. I2.\nG40 X40.\nG53 G0 Z0.\n"
+    return [SLOT.encode(), SLOT.replace("G54\n", stock + "T1 M6\nG55\n" + arcs).encode()]
+
+
+def _draft(path: Path) -> object:
+    from twin.drafting.draft import draft_job
+
+    return draft_job(path, material="Al7075-T6").job()
+
+
 def _tools() -> list[bytes]:
     return [b"T1 P1 Z50 D10 ;end mill\nT2 P2 Z60.5 D6.8\nT3 P3 X0 Y0 Z70 A0 D8 Q1 I90 J10\n"]
 
@@ -319,6 +334,7 @@ def _log_target(suffix: str, once: Mutation, *names: str) -> Target:
 
 TARGETS: dict[str, Target] = {
     "NC program": Target(suffix=".nc", seeds=_programs, once=_mutated_program, use=_check_program),
+    "NC program, drafted": Target(suffix=".nc", seeds=_posted, once=_mutated_program, use=_draft),
     "tool table": Target(suffix=".tbl", seeds=_tools, once=_TABLE, use=_read_tools),
     "parameter file": Target(suffix=".var", seeds=_parameters, once=_TABLE, use=_read_parameters),
     "job": Target(suffix=".toml", seeds=_toml(_jobs), once=_TOML, use=_load_job, neighbours=_job_neighbours),
