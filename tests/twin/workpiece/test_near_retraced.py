@@ -98,3 +98,14 @@ def test_heights_of_the_material_in_columns() -> None:
     heights = np.zeros((1, 1))
     top_heights(family.store, family.grid, 0, 0, 0.0, heights)
     assert math.isinf(heights[0, 0])
+
+
+@pytest.mark.compiled
+def test_a_floor_that_is_lowered_again_and_again_is_not_divided() -> None:
+    """Each chord of a helix lowers the floor under a flat tool; its cells keep the edges of the last ones only."""
+    edges = []
+    for count in (1, 4):
+        piece = CellSlices(BLOCK)
+        cut(piece, turns("flat", count, 0.1, 0.0, 32))
+        edges.append(piece.edges_per_cell[0])
+    assert edges[1] < 1.25 * edges[0] < 15.0

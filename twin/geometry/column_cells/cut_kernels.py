@@ -265,13 +265,20 @@ def _turns(a: float, lo: _Side, hi: _Side) -> tuple[tuple[float, bool], tuple[fl
 def _emit_odd(
     toggles: FloatArray, n: int, segments: FloatArray, pieces: int, lower: bool, out: FloatArray, count: int
 ) -> int:
-    """Add the parts of lo (``lower``) or hi between an odd and the next toggle; -1 when they do not fit."""
+    """Add the parts of lo (``lower``) or hi between an odd and the next toggle; -1 when they do not fit.
+
+    Parts that meet are added as one, or a surface that is cut again and again would be divided ever more finely.
+    """
     if n == 0:
         return count
     toggles[:n].sort()
-    m = 0
-    for i in range(0, n, 2):
+    m, i = 0, 0
+    while i < n:
         ua, ub = toggles[i], toggles[i + 1]
+        i += 2
+        while i < n and toggles[i] == ub:
+            ub = toggles[i + 1]
+            i += 2
         if ub <= ua:
             continue
         while m > 0 and segments[m, UA] > ua:
