@@ -10,6 +10,9 @@ import numpy as np
 from gcode.events import PLANE_AXES
 from twin.arrays import FloatArray
 
+#: More turns than this are several; and rounding in the number of an arc's corners.
+_ONE_TURN, _ROUNDING = 1.0 + 1e-9, 1e-9
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Arc:
@@ -60,7 +63,7 @@ class Move:
         """Points that divide the motion into straight pieces, start and end included, shape (n + 1, 3).
 
         A straight motion is one piece. An arc's chords are no longer than ``step_mm`` and deviate from it by at
-        most ``chord_mm``.
+        most ``chord_mm``. An arc of several turns has the same corners in each.
         """
         if self.arc is None:
             return np.array([self.start_mm, self.end_mm])
@@ -70,8 +73,13 @@ class Move:
         per_chord = 2.0 * math.acos(max(0.0, 1.0 - chord_mm / max(radius, chord_mm)))
         by_length = 0 if step_mm == math.inf else math.ceil(self.length_mm / step_mm)
         n = max(2, by_length, math.ceil(abs(self.arc.sweep_rad) / per_chord))
+        turns = abs(self.arc.sweep_rad) / (2.0 * math.pi)
+        per_corner = 1.0 / n
+        if turns > _ONE_TURN:
+            per_corner = 1.0 / (turns * math.ceil(n / turns))
+            n = math.ceil(1.0 / per_corner * (1.0 - _ROUNDING))
         # as np.linspace has them, in a third of its time
-        part = np.arange(n + 1) * (1.0 / n)
+        part = np.arange(n + 1) * per_corner
         part[-1] = 1.0
         angle = math.atan2(from_centre[j], from_centre[i]) + part * self.arc.sweep_rad
         end_radius = math.hypot(self.end_mm[i] - self.arc.centre_mm[i], self.end_mm[j] - self.arc.centre_mm[j])

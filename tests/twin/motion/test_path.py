@@ -57,6 +57,18 @@ def test_chords_of_an_arc_stay_within_tolerance_and_step(plane: int, sweep: floa
     assert math.copysign(1.0, turn) == math.copysign(1.0, sweep)
 
 
+@pytest.mark.parametrize("turns", [3.0, -2.5, 12.3])
+def test_the_turns_of_an_arc_have_the_same_corners(turns: float) -> None:
+    move = arc_move(17, 2.0 * math.pi * turns, -3.0)
+    corners = move.corners_mm(0.7, 0.01)
+    per_turn = next(i for i in range(3, len(corners)) if np.allclose(corners[i, :2], corners[0, :2]))
+    assert np.abs(corners[per_turn:-1, :2] - corners[: -per_turn - 1, :2]).max() < 1e-12
+    steps = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+    assert steps.max() <= 0.7
+    assert steps[:-1] == pytest.approx(steps[0])
+    assert np.array_equal(corners[-1], move.end_mm)
+
+
 def test_a_straight_move_is_one_piece() -> None:
     move = Move(
         start_mm=np.zeros(3),
