@@ -20,18 +20,20 @@ from twin.number_format import clock
 
 #: Rate of rapids of a job that does not state one, mm/min.
 _RAPID_MM_MIN = 48_000.0
-#: Computing time of a run without its steps, s.
-_SETUP_S = 3.0
-#: Computing time of a step in the material for each slice over the tool's diameter, without and with forces, and of a
-#: force sample, s.
-_SLICE_S, _FORCED_SLICE_S, _SAMPLE_S = 22e-6, 75e-6, 3e-6
+#: Computing time of a run without its motions, s.
+_SETUP_S = 1.5
+#: Computing time of a straight motion in the material for each slice over the tool's diameter, without and with forces,
+#: and of a force sample, s. The length of a motion hardly counts: all its steps are solved together, and cut at once.
+_SLICE_S, _FORCED_SLICE_S, _SAMPLE_S = 0.2e-3, 0.35e-3, 2.5e-6
+#: Length of the straight pieces that an arc counts as, mm.
+_PIECE_MM = 1.0
 #: Bytes of a force sample, of a step, and of a cell of the surface as drawn: in the archive, and in a recording.
 _ARCHIVE_B = (58.0, 130.0, 70.0)
 _RECORDING_B = (72.0, 400.0, 80.0)
 #: Cells along the longest side of the stock as drawn.
 _CELLS = 200.0
-#: Memory of the program itself, and of a column of the slices without and with forces, bytes.
-_PROGRAM_B, _COLUMN_B, _FORCED_COLUMN_B = 340e6, 100.0, 450.0
+#: Memory of the program itself, and of a column of the slices, bytes.
+_PROGRAM_B, _COLUMN_B = 250e6, 180.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,8 +90,8 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
     cells = surface / max(max(x, y, z) / _CELLS, fine.pitch_mm) ** 2
     sizes = {tool.number: tool.diameter_mm for tool in tools}
     slices = np.array([sizes.get(number, 0.0) for number in inside.tool.tolist()]) / fine.pitch_mm
-    cut_slices = float((inside.length_mm * share / fine.pitch_mm * slices).sum())
-    column = _FORCED_COLUMN_B if forces else _COLUMN_B
+    pieces = np.where(inside.arc, np.maximum(1.0, inside.length_mm / _PIECE_MM), 1.0)
+    cut_slices = float((pieces * slices).sum())
 
     def size(parts: tuple[float, float, float]) -> float:
         sample, step, cell = parts
@@ -100,7 +102,7 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
         steps=steps,
         samples=samples,
         computing_s=_SETUP_S + cut_slices * (_FORCED_SLICE_S if forces else _SLICE_S) + samples * _SAMPLE_S,
-        memory_bytes=_PROGRAM_B + surface / fine.pitch_mm**2 * column,
+        memory_bytes=_PROGRAM_B + surface / fine.pitch_mm**2 * _COLUMN_B,
         archive_bytes=size(_ARCHIVE_B),
         recording_bytes=size(_RECORDING_B),
     )
