@@ -33,7 +33,7 @@ _TURN_RAD = 0.5 * math.pi * (1.0 + 1e-9)
 #: Most chords from one whose engagement is found to the next, and their length in tool radii.
 _APART, _APART_RADII = 8, 0.25
 #: Engagements are alike when width, arc and removal rate differ by no more than this part.
-_ALIKE = 0.05
+_ALIKE = 0.1
 
 
 def chords_are_steps(move: Move, setup: Setup) -> bool:
