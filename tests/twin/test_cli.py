@@ -79,7 +79,7 @@ def in_a_process(*arguments: str | Path, **more: str) -> subprocess.Popen[bytes]
 
 def test_commands_are_completed() -> None:
     asked = {"_TWIN_COMPLETE": "complete_bash", "COMP_WORDS": "twin re", "COMP_CWORD": "1"}
-    assert in_a_process(**asked).communicate()[0].decode().split() == ["replay", "reach"]
+    assert in_a_process(**asked).communicate()[0].decode().split() == ["replay", "report", "reach"]
 
 
 @pytest.mark.parametrize(

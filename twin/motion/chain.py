@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -21,7 +22,8 @@ _MOST = 128
 class Chain:
     """Sweeps of one body, each beginning where the one before ends, that go on in one direction along each axis.
 
-    A line along any plane meets their union in one piece, so that one strip for each plane cuts all of them.
+    A line along any plane meets their union in one piece, so that one strip for each plane cuts all of them; on planes
+    across the tool axis only above `settled_mm`.
 
     Attributes:
         corners_mm: shape (n + 1, 3), tool tips where sweeps begin and end.
@@ -50,6 +52,24 @@ class Chain:
         """Whether no sweep rises."""
         return bool(self.corners_mm[-1, 2] <= self.corners_mm[0, 2])
 
+    @property
+    def sweeps(self) -> list[Sweep]:
+        """The sweeps one by one."""
+        return [Sweep(self.body, start, end) for start, end in pairwise(self.corners_mm)]
+
+    @property
+    def settled_mm(self) -> float:
+        """Height from which on level sections are in one piece.
+
+        Near the tip the section of a ball, corner or taper grows from nothing while the chain goes up or down, so a
+        line may meet it at the start and at the end of the chain and miss it between.
+        """
+        meridian = self.body.shape.meridian
+        if meridian.arc_height <= 0.0 and meridian.tangent <= 0.0:
+            return -math.inf
+        rise = abs(float(self.end_mm[2] - self.start_mm[2]))
+        return float(self.bounds_mm[0][2]) + 2.0 * rise if rise > 0.0 else -math.inf
+
     def strips(
         self,
         axis: int,
@@ -58,6 +78,7 @@ class Chain:
         count: int,
         chord_mm: float,
         *,
+        from_plane: int = 0,
         start_is_cut: bool = False,
         end_is_left: bool = False,
         top_mm: float = math.inf,
@@ -66,10 +87,12 @@ class Chain:
         """Sections by the planes of one slice family, as `Sweep.strips` gives them.
 
         Args:
+            from_plane: the first plane of the family to be cut.
             end_is_left: the volume at the end is left to the sweep that comes next; it is marked as not fresh.
             band_mm: height above the lower side up to which there may be material; less than 0 for none anywhere.
         """
         first, planes = planes_between(self.bounds_mm, axis, low_mm, pitch_mm, count)
+        first, planes = max(first, from_plane), planes - max(0, from_plane - first)
         if planes <= 0 or band_mm < 0.0:
             return EMPTY_STRIPS
         cut = ChainPlanes(

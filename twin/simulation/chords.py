@@ -43,6 +43,14 @@ def chords_are_steps(move: Move, setup: Setup) -> bool:
     return bool(lengths.min() > 0.0 and lengths.max() <= setup.step_mm)
 
 
+def chains(move: Move) -> bool:
+    """Whether the chords of a motion may be cut in chains: those of arcs about the tool axis.
+
+    Chords of vertical arcs that climb steeply may be cut some hundredths of a millimetre too deep in chains.
+    """
+    return move.arc is not None and move.arc.plane == 17
+
+
 def chord_groups(move: Move, pieces: Iterator[Piece], tool: ToolSetup, setup: Setup) -> Iterator[list[Piece]]:
     """The chords of an arc in groups for `chord_steps`; each must be cut before the next is taken."""
     if tool.forces is None:

@@ -20,7 +20,7 @@ from gcode.events import Event
 from twin.job import Job
 from twin.motion.path import Move
 from twin.record import Record, RunSummary
-from twin.simulation.chords import chord_groups, chord_steps, chords_are_steps
+from twin.simulation.chords import chains, chord_groups, chord_steps, chords_are_steps
 from twin.simulation.clock import Turned
 from twin.simulation.contacts import Contacts, box_of, forbidden
 from twin.simulation.preview import Piece
@@ -109,7 +109,8 @@ def cut(move: Move, setup: Setup) -> Iterator[Record]:
     setup.starts.check(tool, move, material)
     contacts = Contacts()
     pieces = _straight(move, setup.step_mm, setup.tolerance.chord_mm)
-    if move.arc is not None and forbidden(move) is None and chords_are_steps(move, setup):
+    together = move.arc is not None and (tool.forces is not None or chains(move))
+    if together and forbidden(move) is None and chords_are_steps(move, setup):
         yield from _cut_chords(move, pieces, tool, setup, contacts)
     else:
         yield from _cut_pieces(move, pieces, tool, setup, contacts)

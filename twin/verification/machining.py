@@ -11,7 +11,7 @@ from gcode.events import ToolChange
 from twin.job import Job
 from twin.motion.path import Move
 from twin.record import Collision
-from twin.simulation.chords import chain_groups
+from twin.simulation.chords import chain_groups, chains
 from twin.simulation.contacts import Contacts, box_of, collision_record, forbidden
 from twin.simulation.material import Material
 from twin.simulation.setup import prepare
@@ -67,7 +67,7 @@ def _cut(material: Material, tool: ToolSetup, move: Move, chord_mm: float, t_s: 
     """Remove the material of one motion and return its forbidden contacts."""
     contacts = Contacts()
     pieces = ((start, end, 0.0) for start, end in pairwise(move.corners_mm(math.inf, chord_mm)))
-    if move.arc is not None and forbidden(move) is None:
+    if chains(move) and forbidden(move) is None:
         for chords in chain_groups(pieces, tool, material):
             for start, end, _ in chords:
                 material.add_chord(tool, start, end)

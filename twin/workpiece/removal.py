@@ -120,24 +120,44 @@ class Removal:
         count = levels if axis == 2 else piece.count(axis)
         top = float(piece.low_mm[2] + (levels + 0.5) * piece.pitch_mm[2])  # where the next plane is, which is empty
         if isinstance(sweep, Chain):
+            settled = self._settled(axis, sweep, count) if cut.band_mm >= 0.0 else 0
+            alone = self._cut_alone(sweep, cut, settled, top, apply) if settled else 0.0
             strips = sweep.strips(
                 axis,
                 low,
                 pitch,
                 count,
                 self._chord_mm,
+                from_plane=settled,
                 start_is_cut=cut.start_is_cut,
                 end_is_left=cut.end_is_left,
                 top_mm=top,
                 band_mm=cut.band_mm,
             )
-        else:
-            known = cut.start_is_cut and axis != 2
-            tops = self._tops(axis, sweep, count) if known else NO_TOPS
-            strips = sweep.strips(
-                axis, low, pitch, count, self._chord_mm, start_is_cut=cut.start_is_cut, top_mm=top, tops=tops
-            )
+            return alone + float(np.sum(piece.cut(axis, strips, apply=apply)) * pitch)
+        known = cut.start_is_cut and axis != 2
+        tops = self._tops(axis, sweep, count) if known else NO_TOPS
+        strips = sweep.strips(
+            axis, low, pitch, count, self._chord_mm, start_is_cut=cut.start_is_cut, top_mm=top, tops=tops
+        )
         return float(np.sum(piece.cut(axis, strips, apply=apply)) * pitch)
+
+    def _settled(self, axis: int, chain: Chain, count: int) -> int:
+        """The first plane of a family on which the chain's section is in one piece; see `Chain.settled_mm`."""
+        if axis != 2 or chain.settled_mm == -math.inf:
+            return 0
+        low, pitch = float(self.workpiece.low_mm[2]), float(self.workpiece.pitch_mm[2])
+        return min(count, max(0, math.ceil((chain.settled_mm - low) / pitch - 0.5)))
+
+    def _cut_alone(self, chain: Chain, cut: _Cut, below: int, top_mm: float, apply: bool) -> float:
+        """Cut a chain's sweeps one by one on the planes across the tool axis below an index; returns the volume."""
+        piece, volume, start_is_cut = self.workpiece, 0.0, cut.start_is_cut
+        low, pitch = float(piece.low_mm[2]), float(piece.pitch_mm[2])
+        for sweep in chain.sweeps:
+            strips = sweep.strips(2, low, pitch, below, self._chord_mm, start_is_cut=start_is_cut, top_mm=top_mm)
+            volume += float(np.sum(piece.cut(2, strips, apply=apply)) * pitch)
+            start_is_cut = True
+        return volume
 
     def _tops(self, axis: int, sweep: Sweep, count: int) -> Tops:
         """Heights of the material about a short sweep: most of what it sweeps has been cut by those before it."""

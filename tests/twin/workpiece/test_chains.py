@@ -113,3 +113,20 @@ def test_chords_that_were_cut_before_leave_a_band() -> None:
     (moved,) = chained([Sweep(body, *(level + np.array((1e-6, 0, -0.2))))])
     (other,) = chained([Sweep(BODIES["ball"], *level)])
     assert all(known.band_mm(chain) == math.inf for chain in (higher, moved, other))
+
+
+@pytest.mark.parametrize("kind", ["ball", "bull", "taper"])
+@pytest.mark.parametrize("down_mm", [1.6, -1.6], ids=["down", "up"])
+def test_planes_that_a_tip_has_just_reached_are_cut_by_each_sweep(kind: str, down_mm: float) -> None:
+    """A quarter turn that goes through two planes: each of them is met by the tip within the chain."""
+    sweeps = helix(kind, 1, abs(down_mm))[:8]
+    if down_mm < 0.0:
+        sweeps = [Sweep(s.body, s.end_mm, s.start_mm) for s in reversed(sweeps)]
+    together, alone = CellSlices(BLOCK), CellSlices(BLOCK)
+    in_chains(together, sweeps, 8)
+    one_by_one(alone, sweeps)
+    (chain,) = chained(sweeps)
+    planes = BLOCK.low_mm[2] + (np.arange(len(BLOCK.regions[2])) + 0.5) * PITCH_MM
+    reached = (planes > chain.bounds_mm[0][2]) & (planes < chain.settled_mm)
+    assert reached.sum() >= 2
+    assert np.array_equal(together.areas_mm2(2)[reached], alone.areas_mm2(2)[reached])

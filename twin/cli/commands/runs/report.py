@@ -18,9 +18,9 @@ def report(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Write a page about a run: summary, forces by tool and line, positions with the highest force, collisions.
+    """Write a page about a run: summary, forces by tool and line, worst positions, collisions, warnings.
 
-    The page also has warnings, assumptions and all settings. It is one file with its pictures inside, for printing too.
+    The page also has assumptions and all settings. It is one file with its pictures inside, for printing too.
     """
     from twin.cli.console import results
     from twin.cli.early_end import warn_of_early_end
