@@ -22,10 +22,9 @@ from twin.motion.path import Move
 from twin.motion.sweep import SweptVolume
 from twin.record import Engagement, Step
 from twin.simulation.material import Material
-from twin.simulation.preview import Piece
 from twin.simulation.setup import Setup
 from twin.simulation.solve import Solved
-from twin.simulation.steps import SAMPLES_TOGETHER, STEPS_TOGETHER, refuse_endless
+from twin.simulation.steps import SAMPLES_TOGETHER, STEPS_TOGETHER, Piece, refuse_endless
 from twin.simulation.tools import ToolSetup
 
 #: Chords that turn by no more than this do not reach the front of the tool at those after them.

@@ -6,7 +6,7 @@ import math
 from collections import deque
 from collections.abc import Iterator, Sequence
 from itertools import groupby, pairwise
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,9 +31,6 @@ SAME_LINE_MM = 1e-9
 #: A sweep of the tool itself this many chord deviations behind a tangent plane does not reach it: it has been enlarged
 #: by one.
 _BEHIND_CHORDS = 1.1
-
-#: Lower and upper corner, both of shape (3,).
-Box: TypeAlias = tuple[FloatArray, FloatArray]
 
 
 class _Waiting(NamedTuple):
@@ -82,7 +79,6 @@ class Material:
         self._window_mm = PENDING_PITCHES * float(np.max(workpiece.pitch_mm))
         self._behind_mm = _BEHIND_CHORDS * tolerance.chord_mm
         self.removed_mm3: dict[int, float] = {}
-        self._changed: list[Box] = []
         self._last_tool = 0
 
     def pending(self, tool: int, start_mm: FloatArray, feed: FloatArray) -> SweptVolume:
@@ -232,16 +228,10 @@ class Material:
             tools.extend([tool] * (len(sweeps) - len(tools)))
         volumes = self._removal.cut_all(sweeps, after=self._waiting[0].sweep if self._waiting else after)
         self._last_tool = tools[-1]
-        for sweep, tool, volume in zip(sweeps, tools, volumes.tolist(), strict=True):
+        for tool, volume in zip(tools, volumes.tolist(), strict=True):
             if volume > 0.0:
                 self.removed_mm3[tool] = self.removed_mm3.get(tool, 0.0) + volume
-                self._changed.append(sweep.bounds_mm)
         return float(volumes.sum())
-
-    def take_changed(self) -> list[Box]:
-        """Boxes in which material was removed since this was last asked."""
-        changed, self._changed = self._changed, []
-        return changed
 
     def close(self) -> None:
         """End the worker threads."""

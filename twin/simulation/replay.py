@@ -23,11 +23,10 @@ from twin.record import Record, RunSummary
 from twin.simulation.chords import chains, chord_groups, chord_steps, chords_are_steps
 from twin.simulation.clock import Turned
 from twin.simulation.contacts import Contacts, box_of, forbidden
-from twin.simulation.preview import Piece
 from twin.simulation.setup import Setup, prepare
 from twin.simulation.short_motions import Joined, joined
 from twin.simulation.solve import Solved
-from twin.simulation.steps import piece_steps, positions
+from twin.simulation.steps import Piece, piece_steps, positions
 from twin.simulation.tools import ToolSetup
 from twin.workpiece.to_mesh import SurfaceMesh, surface_mesh
 from twin.workpiece.trislice import TriSlices
@@ -35,16 +34,24 @@ from twin.workpiece.trislice import TriSlices
 
 def replayed(setup: Setup) -> Iterator[Record]:
     """The records of a job's replay, in order."""
+    preview, material = setup.preview, setup.material
     yield setup.header
-    yield from setup.preview.whole(setup.material.workpiece)
+    if preview is not None:
+        yield from preview.start()
+    yield from preview.along(_cut_all(setup)) if preview is not None else _cut_all(setup)
+    material.flush()
+    if preview is not None:
+        yield from preview.end(setup.recorder.t_s)
+    yield setup.recorder.summary(material, complete=True)
+
+
+def _cut_all(setup: Setup) -> Iterator[Record]:
+    """The records of a program's motions and events."""
     for item in joined(setup.moves, setup.step_mm, setup.tolerance.join_mm):
         if isinstance(item, Joined):
             yield from cut_joined(item, setup)
         else:
             yield from _one(item, setup)
-    setup.material.flush()
-    yield from setup.preview.changes(setup.material, setup.recorder.t_s)
-    yield setup.recorder.summary(setup.material, complete=True)
 
 
 def _one(item: Move | Event, setup: Setup) -> Iterator[Record]:
@@ -68,7 +75,6 @@ def cut_joined(short: Joined, setup: Setup) -> Iterator[Record]:
     yield from _joined_records(short, tool, setup)
     contacts.add(material.cut(tool, whole.start_mm, whole.end_mm, None), begun_s, whole.start_mm)
     contacts.add(material.touches(tool, whole.start_mm, whole.end_mm), begun_s, whole.start_mm)
-    yield from setup.preview.frame(material, recorder.t_s)
     yield from recorder.collisions(contacts.found(material.contact_mm3), whole)
 
 
@@ -124,10 +130,8 @@ def _cut_pieces(
     material, recorder = setup.material, setup.recorder
     for start, end, duration_s in pieces:
         begun_s = recorder.t_s
-        for piece in setup.preview.parts(start, end, duration_s):
-            yield from piece_steps(move, piece, tool, setup)
-            contacts.add(material.cut(tool, *piece[:2], forbidden(move)), begun_s, start)
-            yield from setup.preview.frame(material, recorder.t_s)
+        yield from piece_steps(move, (start, end, duration_s), tool, setup)
+        contacts.add(material.cut(tool, start, end, forbidden(move)), begun_s, start)
         contacts.add(material.touches(tool, start, end), begun_s, start)
 
 
@@ -135,7 +139,7 @@ def _cut_chords(
     move: Move, pieces: Iterator[Piece], tool: ToolSetup, setup: Setup, contacts: Contacts
 ) -> Iterator[Record]:
     """Chords of an arc, each a step; steps are solved together until slices change."""
-    material, recorder = setup.material, setup.recorder
+    material = setup.material
     for chords in chord_groups(move, pieces, tool, setup):
         steps = chord_steps(move, chords, tool, setup)
         for (start, end, _), step in zip(chords, steps, strict=True):
@@ -144,7 +148,6 @@ def _cut_chords(
                 material.add_chord(tool, start, end)
             else:
                 contacts.add(material.cut(tool, start, end, None), step.t_s, start)
-            yield from setup.preview.frame(material, recorder.t_s)
             contacts.add(material.touches(tool, start, end), step.t_s, start)
 
 
@@ -164,8 +167,7 @@ class Replay:
 
     Args:
         threads: how many work on slices and steps, None for all cores; results do not depend on it.
-        preview: whether patches of the workpiece's surface are among the records, at key frames, where motions are
-            divided.
+        preview: whether patches of the workpiece's surface are among the records; the others do not depend on it.
         report: called with each task of the preparation as it begins.
 
     Raises:

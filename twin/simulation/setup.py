@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from twin.record import RunHeader
 from twin.simulation.contacts import StartCheck
 from twin.simulation.header import run_header
 from twin.simulation.material import Material
-from twin.simulation.preview import FRAMES, Preview
+from twin.simulation.preview import Preview
 from twin.simulation.program import ProgramMoves, program_moves
 from twin.simulation.recorder import Recorder
 from twin.simulation.solve import StepSolver
@@ -41,7 +40,7 @@ class Setup:
         material: the workpiece, and the sweeps that are still to be subtracted from it.
         solver: engagement and forces of steps.
         recorder: machine time, spindle angle, sums, and the records that they make.
-        preview: the workpiece's surface at key frames.
+        preview: draws the workpiece's surface while it is machined, None for a replay without.
         starts: refuses tools that begin inside the stock.
         step_mm: longest step of a feed motion in the material.
         air_chord_mm: distance of chords from arcs where there is nothing to cut.
@@ -55,7 +54,7 @@ class Setup:
     material: Material
     solver: StepSolver
     recorder: Recorder
-    preview: Preview
+    preview: Preview | None
     starts: StartCheck
     step_mm: float
     air_chord_mm: float
@@ -74,7 +73,7 @@ def prepare(
 
     Args:
         threads: how many work on slices and steps, None for all cores; results do not depend on it.
-        preview: whether the workpiece's surface is recorded at key frames, where motions are divided.
+        preview: whether the workpiece's surface is among the records; the others do not depend on it.
         report: called with each task as it begins.
 
     Raises:
@@ -93,7 +92,6 @@ def prepare(
     planned_time_s = moves.checked_time_s(job.machine.tool_change_s)
     report("storing the slices")
     workpiece = PolygonSlices(slices) if fineness.store == "reference" else CellSlices(slices)
-    frame_s = planned_time_s / FRAMES or math.inf
     return Setup(
         program=str(job.program.file),
         header=run_header(job, workpiece, [t.record for t in tools.values()], planned_time_s, slices.notes),
@@ -107,7 +105,7 @@ def prepare(
             tool_change_s=job.machine.tool_change_s,
             program=str(job.program.file),
         ),
-        preview=Preview.of(workpiece, fineness.preview_pitch_mm, frame_s) if preview else Preview.none(),
+        preview=Preview(workpiece, tools, planned_time_s, fineness.preview_pitch_mm) if preview else None,
         starts=StartCheck(str(job.program.file)),
         step_mm=fineness.step_mm,
         air_chord_mm=0.5 * fineness.slice_pitch_mm,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from itertools import islice
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,11 +17,12 @@ from twin.motion.sweep import SweptVolume
 from twin.record import Step
 from twin.simulation.clock import Turned
 from twin.simulation.contacts import forbidden
-from twin.simulation.preview import Piece
 from twin.simulation.setup import Setup
 from twin.simulation.solve import Solved, StepSolver, one_ahead
 from twin.simulation.tools import ToolSetup
 
+#: A straight motion of the tool tip: start and end, shape (3,), mm, and its duration, s.
+Piece: TypeAlias = tuple[FloatArray, FloatArray, float]
 #: Steps of a motion that are solved together, whatever the number of threads.
 STEPS_TOGETHER = 64
 #: Most steps of one motion, and most force samples of one step and of steps that are solved together.

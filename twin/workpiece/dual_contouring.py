@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -179,7 +179,7 @@ def _contour(
     quads = quads[: contour_kernels.join_quads(block.shape, own, numbers, axes, _sheets(), first, cases, quads)]
     triangles = np.empty((2 * len(quads), 3), dtype=np.int32)
     contour_kernels.split_quads(quads, vertices, creased, triangles)
-    used, corners = np.unique(triangles, return_inverse=True)
+    used, corners = in_use(triangles, n)
     i, j, k = np.unravel_index(cells[:n] // 4, block.shape)
     names = 4 * np.ravel_multi_index((i + start[0], j + start[1], k), whole) + cells[:n] % 4
     return SurfacePart(
@@ -187,6 +187,13 @@ def _contour(
         normals=vertex_normals[used],
         creased=creased[used],
         names=names[used],
-        triangles=corners.reshape(-1, 3).astype(np.int32),
+        triangles=corners.astype(np.int32),
         leading=np.repeat(normals[quads[:, 4]], 2, axis=0),
     )
+
+
+def in_use(triangles: NDArray[np.integer[Any]], count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The vertices that triangles use, out of ``count``, in order, and the triangles with the numbers of these."""
+    used = np.zeros(count, dtype=np.bool_)
+    used[triangles] = True
+    return np.flatnonzero(used), (np.cumsum(used) - 1)[triangles]

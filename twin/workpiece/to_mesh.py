@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.record import WorkpiecePatch
-from twin.workpiece.dual_contouring import MARGIN, SurfacePart, draw_part
+from twin.workpiece.dual_contouring import MARGIN, SurfacePart, draw_part, in_use
 from twin.workpiece.lattice import Lattice, Patch, PatchGrid
 from twin.workpiece.store import SliceStore
 
-#: Cells of a block along x and y when only what changed is drawn, and when all is.
-PATCH_CELLS = 32
+#: Cells of a block along x and y when its surface is drawn in patches, and when it is one mesh.
+PATCH_CELLS = 16
 WHOLE_CELLS = 64
 
 
@@ -86,7 +86,7 @@ def patch_mesh(store: SliceStore, grid: PatchGrid, patch: Patch, t_s: float = 0.
     vertices = np.concatenate((part.vertices, part.vertices[triangles[extra]]))
     normals = np.concatenate((part.normals, own))
     triangles[extra] = len(part.vertices) + np.arange(len(extra))
-    used, corners = np.unique(triangles, return_inverse=True)
+    used, corners = in_use(triangles, len(vertices))
     return WorkpiecePatch(
         t_s=t_s,
         patch=patch.name,
