@@ -55,7 +55,7 @@ def slot(folder: Path, feed_mm_min: float, pitch_mm: float = PITCH_MM, length_mm
 
 
 def once(job: Job, threads: int) -> tuple[float, str]:
-    """Real-time factor and digest of one replay without key frames of the surface."""
+    """Real-time factor and digest of one replay without drawing the part."""
     begin = time.perf_counter()
     with Replay(job, threads=threads, preview=False) as run:
         for _ in run:

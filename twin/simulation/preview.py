@@ -25,8 +25,11 @@ from twin.workpiece.lattice import PatchGrid
 from twin.workpiece.to_mesh import PATCH_CELLS, patch_grid, patch_mesh
 from twin.workpiece.trislice import TriSlices
 
-#: Machine time between frames, and the most frames of a run: with more than that, they are further apart.
-EVERY_S, FRAMES = 0.2, 20_000
+#: Machine time between frames, s.
+EVERY_S = 0.2
+#: Most bytes of meshes in a run: where they come faster than the run goes on, frames are further apart. A share of them
+#: is there from the start.
+MOST_BYTES, AT_ONCE = 120e6, 0.25
 #: How far the drawn surface may lie off the height map, in cells of the surface at the end.
 LIMIT = 0.05
 #: Distance, in the same unit, that the tool moves before something visible has changed.
@@ -56,7 +59,8 @@ class Preview:
     ) -> None:
         self._workpiece = workpiece
         self._tools = tools
-        self._every_s = max(EVERY_S, planned_s / FRAMES)
+        self._planned_s = planned_s
+        self._bytes = 0.0
         self._grid = preview_grid(workpiece, pitch_mm)
         self._part = part_heights(workpiece, self._grid)
         self._cell_mm = float(np.max(np.diff(self._grid.lattice.nodes_mm[0])))
@@ -94,7 +98,7 @@ class Preview:
             self._held.append((step.tool, step.start_mm, step.end_mm))
             return
         self._held.clear()
-        count = max(1, math.ceil(2.0 * step.duration_s / self._every_s))
+        count = max(1, math.ceil(2.0 * step.duration_s / EVERY_S))
         part_s = step.duration_s / count
         part_mm = math.dist(step.start_mm, step.end_mm) / count
         ends = np.linspace(step.start_mm, step.end_mm, count + 1).tolist()
@@ -102,7 +106,9 @@ class Preview:
             self._strokes.append((step.tool, begin, end))
             self._moved_mm += part_mm
             now_s = step.t_s + k * part_s
-            if now_s + part_s > self._frame_s + self._every_s and self._moved_mm >= VISIBLE * self._cell_mm:
+            if now_s + part_s > self._frame_s + EVERY_S and self._moved_mm >= VISIBLE * self._cell_mm:
+                if self._bytes > MOST_BYTES * (AT_ONCE + (1.0 - AT_ONCE) * now_s / self._planned_s):
+                    continue
                 self._frame_s, self._moved_mm = now_s, 0.0
                 numbers = self._cut()
                 self._stale[numbers] = True
@@ -128,6 +134,7 @@ class Preview:
     def _drawn(self, numbers: NDArray[np.int64], t_s: float) -> Iterator[WorkpiecePatch]:
         """Patches of the height map."""
         for number, mesh in zip(numbers.tolist(), self._tiles.draw(numbers), strict=True):
+            self._bytes += mesh.vertices_mm.nbytes + mesh.normals.nbytes + mesh.triangles.nbytes
             yield WorkpiecePatch(
                 t_s=t_s,
                 patch=self._patches[number].name,

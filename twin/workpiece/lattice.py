@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -97,20 +96,6 @@ class PatchGrid:
             (i * self.size, min((i + 1) * self.size, n - 1)) for i, n in zip(patch, self.lattice.shape, strict=False)
         ]
         return ends[0], ends[1]
-
-    def touching(self, low_mm: FloatArray, high_mm: FloatArray) -> Iterator[Patch]:
-        """The blocks whose surface may change when the material inside a box does.
-
-        Args:
-            low_mm, high_mm: corners of the box, shape (3,) or (2,).
-        """
-        for patch in self.patches:
-            inside = True
-            for axis, (first, last) in enumerate(self.cells(patch)):
-                nodes = self.lattice.nodes_mm[axis]
-                inside &= bool(nodes[max(0, first - 1)] <= high_mm[axis] and low_mm[axis] <= nodes[last])
-            if inside:
-                yield patch
 
     def _counts(self) -> tuple[int, int]:
         nx, ny, _ = self.lattice.shape

@@ -34,8 +34,8 @@ def test_its_job_replays_to_the_same_forces(run: twin.Run, tmp_path: Path) -> No
     now = twin.replay(tmp_path / "job.toml")
     for name, values in run.forces.items():
         assert np.array_equal(values, now.forces[name]), name
-    # tiny edges of cells have since been merged
-    assert now.summary.removed_volume_mm3 == pytest.approx(run.summary.removed_volume_mm3, rel=1e-7)
+    # tiny edges of cells have since been merged, and motions are no longer divided where the part was drawn
+    assert now.summary.removed_volume_mm3 == pytest.approx(run.summary.removed_volume_mm3, rel=5e-4)
 
 
 def test_its_table_measured_is_what_a_comparison_uses(run: twin.Run, tmp_path: Path) -> None:

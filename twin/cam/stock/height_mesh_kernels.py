@@ -2,8 +2,8 @@
 
 A tile is divided into two right triangles, and these along their longest side's middle, again and again, where the
 surface lies off the undivided side (right-triangulated irregular networks: Evans, Kirkpatrick and Townsend, 2001). A
-triangle is divided whenever one inside it is, so a tile has no gaps;
-neighbouring tiles differ by the tolerance at most.
+triangle is divided whenever one inside it is, so a tile has no gaps; neighbouring tiles differ by the tolerance at
+most.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class _Tile(NamedTuple):
     Attributes:
         tops, bottoms: shape (nodes,).
         column, row: number of each node's column and row in the map, shape (side,).
-        errors: shape (nodes,), how far the surface lies off the side whose middle a node is, there or within.
+        errors: shape (nodes,), how far the surface may lie off the two triangles on the side whose middle a node is.
         corners: shape (k, 3), nodes of the triangles.
         sums: shape (3 nodes, 3), sums of normals of a node's vertices.
         numbers: shape (3 nodes,), number of a node's vertices, -1 without one.
@@ -186,21 +186,21 @@ def _take(heights: HeightMap, first_column: int, first_row: int, limit: float, t
 
 @helper
 def _measure(tile: _Tile, flat_bottom: bool, table: NDArray[np.int64]) -> None:
-    """Errors of all nodes, small triangles first; a node has those of the triangles within."""
+    """Bounds of the errors of all nodes, small triangles first; those of the triangles within are added to a node's."""
     tops, bottoms, errors = tile.tops, tile.bottoms, tile.errors
     errors[:] = 0.0
     for k in range(TRIANGLES - 1, -1, -1):
         ax, ay, bx, by, cx, cy = table[k, 0], table[k, 1], table[k, 2], table[k, 3], table[k, 4], table[k, 5]
         a, b = ax * _SIDE + ay, bx * _SIDE + by
         middle = ((ax + bx) >> 1) * _SIDE + ((ay + by) >> 1)
-        error = max(errors[middle], abs(tops[middle] - 0.5 * (tops[a] + tops[b])))
+        error = abs(tops[middle] - 0.5 * (tops[a] + tops[b]))
         if not flat_bottom:
             error = max(error, abs(bottoms[middle] - 0.5 * (bottoms[a] + bottoms[b])))
         if k < _PARENTS:
             left = ((ax + cx) >> 1) * _SIDE + ((ay + cy) >> 1)
             right = ((bx + cx) >> 1) * _SIDE + ((by + cy) >> 1)
-            error = max(error, errors[left], errors[right])
-        errors[middle] = error
+            error += max(errors[left], errors[right])
+        errors[middle] = max(errors[middle], error)
 
 
 @helper
