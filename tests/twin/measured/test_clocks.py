@@ -76,6 +76,36 @@ def test_dates_of_other_countries_over_midnight(form: str, tmp_path: Path) -> No
     as_expected(read(tmp_path, written(lambda t: t.strftime(form), datetime(2019, 12, 31, 23, 59, 59))))
 
 
+RARER = {
+    "weekday in full": lambda t: f"{t:%A, %B %d, %Y %I:%M:%S.%f %p}",
+    "weekday, day first": lambda t: f"{t:%A %d %B %Y %H:%M:%S.%f}",
+    "weekday in German": lambda t: f"Donnerstag, {t:%d.%m.%Y %H:%M:%S,%f}",
+    "mail": lambda t: f"{t:%a, %d %b %Y %H:%M:%S.%f} GMT",
+    "zone": lambda t: f"{t:%Y-%m-%d %H:%M:%S.%f} CET",
+    "Uhr": lambda t: f"{t:%d.%m.%Y %H:%M:%S,%f} Uhr",
+    "PM first": lambda t: f"{t:%m/%d/%Y %p %I:%M:%S.%f}",
+    "brackets": lambda t: f"[{t:%Y-%m-%d %H:%M:%S.%f}]",
+    "dash before the time": lambda t: f"{t:%d/%m/%Y-%H:%M:%S.%f}",
+    "points": lambda t: f"{t:%d.%m.%Y %H.%M.%S.%f}",
+    "underscore": lambda t: f"{t:%Y%m%d_%H%M%S.%f}",
+    "compact date": lambda t: f"{t:%Y%m%d %H:%M:%S.%f}",
+    "days": lambda t: f"{(t - datetime(2024, 1, 1)).days} days {t:%H:%M:%S.%f}",
+}
+
+
+@pytest.mark.parametrize("form", RARER)
+@pytest.mark.parametrize("begin", [datetime(2024, 2, 28, 23, 59, 59), datetime(2024, 3, 14, 11, 59, 59)])
+def test_rarer_forms_over_midnight_and_noon(form: str, begin: datetime, tmp_path: Path) -> None:
+    as_expected(read(tmp_path, written(RARER[form], begin)))
+
+
+def test_months_of_other_languages_that_begin_alike(tmp_path: Path) -> None:
+    months = {6: "juin", 7: "juillet", 2: "février", 3: "mars"}
+    for begin in (datetime(2024, 6, 30, 23, 59, 59), datetime(2024, 2, 29, 23, 59, 59)):
+        text = written(lambda t: f"{t.day} {months[t.month]} {t:%Y %H:%M:%S.%f}", begin)
+        as_expected(read(tmp_path, text))
+
+
 def test_times_that_step_once_show_no_rate(tmp_path: Path) -> None:
     rows = "".join(f"10:00:0{k // 50};{k};1;2\n" for k in range(100))
     with pytest.raises(MeasuredError, match=r"too coarse: 100 samples at 2 times; give the sampling rate by --rate"):
@@ -165,7 +195,21 @@ def test_a_time_that_cannot_be_read_is_named(tmp_path: Path) -> None:
         read(tmp_path, f"{text}\nnoon;1;2;3\n10:01:00.0;1;2;3\n")
 
 
-@pytest.mark.parametrize("text", ["13:00:00 PM", "31.31.2020 10:00:00", "1.5", "abc", "2020-01-02x", "1-2"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "13:00:00 PM",
+        "10:75:00",
+        "10:30:75",
+        "10:75",
+        "Part 10:00:00",
+        "31.31.2020 10:00:00",
+        "1.5",
+        "abc",
+        "2020-01-02x",
+        "1-2",
+    ],
+)
 def test_other_texts_are_no_moments(text: str) -> None:
     assert moment(text) is None
 
