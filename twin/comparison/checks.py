@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
+from twin.arrays import FloatArray
 from twin.comparison.delay import FAR_RIVALS, Delay, better_axes, find_delay
 from twin.comparison.run_forces import RunForces
 from twin.errors import CompareError
@@ -21,6 +23,11 @@ _THOUSANDS = 7000.0
 _DOUBTFUL_FACTOR = 7.0
 #: For each unit the one a thousand times larger, and the one a thousand times smaller.
 _OTHER_UNITS = {"N": ("kN", "mN"), "kN": ("MN", "N"), "mN": ("N", "uN")}
+#: An axis with less than this part of the run's force hardly takes part in it; a log's axis beyond this many times the
+#: run's force is of another scale all the same.
+_LEAST_SHARE, _FAR_ABOVE = 0.05, 2.0
+#: The least level that a factor is proposed for, N.
+_LEAST_LEVEL_N = 1e-3
 _LEVEL_SAMPLES = 50_000
 _SPEED_WITHIN = 0.01
 _POOR_FIT = 0.75
@@ -39,17 +46,21 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
         raise CompareError(f"{log.source}: all forces are equal: nothing was measured")
     if not simulated > 0.0:
         return
-    smaller = simulated > measured
-    ratio = simulated / measured if smaller else measured / simulated
+    wrong, right = _axes_by_scale(log, even, simulated)
+    if wrong and right:
+        for axis, own, expected in wrong:
+            yield from _axis_mistake(log, axis, own, expected, settings)
+        return
+    ratio = _ratio(measured, simulated)
     if ratio < _DOUBTFUL_FACTOR:
         return
-    levels = f"level {measured:.4g} N, expected about {simulated:.4g} N"
-    text = f"{log.source}: forces are about {_round(ratio)} times {'smaller' if smaller else 'larger'} than the run's"
+    text = f"{log.source}: forces are about {_differ(measured, simulated)}"
+    levels = _levels(measured, simulated)
     if ratio < _UNIT_FACTOR:
         yield f"{text} ({levels}): is the unit or the sensitivity right, and is it the same cut?"
         return
     larger_unit, smaller_unit = _OTHER_UNITS.get(log.unit, ("kN", "mN"))
-    unit = larger_unit if smaller else smaller_unit
+    unit = larger_unit if simulated > measured else smaller_unit
     if ratio < _THOUSANDS:
         text += f" ({levels}): in {unit}? Give the unit by --unit {unit}; any makes it a warning"
     else:
@@ -60,6 +71,64 @@ def check_units(run: RunForces, log: ForceLog, settings: CompareSettings) -> Ite
     if settings.unit is None:
         raise CompareError(text)
     yield text
+
+
+def _axes_by_scale(
+    log: ForceLog, even: FloatArray, simulated: float
+) -> tuple[list[tuple[str, float, float]], list[str]]:
+    """Axes of another scale than the run's, each with its level in the log and in the run, N; and the other ones.
+
+    An axis that hardly takes part in the run's force is one of these only where it exceeds that force.
+    """
+    wrong, right = [], []
+    for axis in log.axes:
+        i = AXES.index(axis)
+        own, expected = _level(log.force_n[:, [i]]), _level(even[:, [i]])
+        takes_part = expected >= _LEAST_SHARE * simulated
+        if _ratio(own, expected) >= _UNIT_FACTOR and (takes_part or 0.0 < _FAR_ABOVE * simulated <= own):
+            wrong.append((axis, own, expected))
+        elif takes_part:
+            right.append(axis)
+    return wrong, right
+
+
+def _axis_mistake(
+    log: ForceLog, axis: str, measured: float, simulated: float, settings: CompareSettings
+) -> Iterator[str]:
+    """An axis of another scale than the others: an error, a warning where a unit was given or nothing was measured."""
+    channel = log.channels[AXES.index(axis)]
+    if not measured > 0.0:
+        yield (
+            f"{log.source}: F{axis} ({channel}) is constant, expected about {simulated:.4g} N: was it measured? "
+            "Axes that the map omits are not compared"
+        )
+        return
+    factor = 10.0 ** round(math.log10(max(simulated, _LEAST_LEVEL_N) / measured))
+    sign, name = ("-", channel[1:]) if channel.startswith("-") else ("", channel)
+    example = "" if any(mark in name for mark in "+-*") else f", e.g. {axis}={sign}{factor:g}*{name}"
+    text = (
+        f"{log.source}: F{axis} ({channel}) is about {_differ(measured, simulated)}, and other axes are not "
+        f"({_levels(measured, simulated)}): another unit or sensitivity? Give its factor in the map{example}; any "
+        "--unit makes it a warning"
+    )
+    if settings.unit is None:
+        raise CompareError(text)
+    yield text
+
+
+def _ratio(one: float, two: float) -> float:
+    """The larger of two levels by the smaller."""
+    low, high = sorted((one, two))
+    return high / low if low > 0.0 else math.inf
+
+
+def _differ(measured: float, simulated: float) -> str:
+    word = "smaller" if simulated > measured else "larger"
+    return f"{_round(_ratio(measured, simulated))} times {word} than the run's"
+
+
+def _levels(measured: float, simulated: float) -> str:
+    return f"level {measured:.4g} N, expected about {simulated:.4g} N"
 
 
 def _round(ratio: float) -> str:

@@ -10,13 +10,14 @@ import pytest
 from support.compared import log_of, run, write_log
 
 from twin.arrays import FloatArray, frozen
+from twin.comparison.checks import check_units
 from twin.comparison.comparison import Comparison, compare
 from twin.comparison.harmonics import lines
 from twin.comparison.metrics import axis_errors
 from twin.comparison.run_forces import run_forces
 from twin.errors import CompareError
 from twin.measured.forces import read_forces
-from twin.measured.log import ForceLog
+from twin.measured.log import AXES, ForceLog
 from twin.measured.settings import CompareSettings
 
 RUN = run()
@@ -164,6 +165,24 @@ def test_a_unit_wrong_by_a_thousand_is_refused(factor: float, how: str, unit: st
         compare(RUN, log, CompareSettings())
     found = compare(RUN, log, CompareSettings(unit="N"))
     assert any(f"times {how} than the run's" in w for w in found.warnings)
+
+
+@pytest.mark.parametrize("axis", AXES)
+@pytest.mark.parametrize("power", [-6, -3, 3, 6])
+def test_one_channel_of_another_scale_is_refused(axis: str, power: int) -> None:
+    log = mapped(log_of(RUN), np.diag(np.where(np.array(AXES) == axis, 10.0**power, 1.0)))
+    how = "smaller" if power < 0 else "larger"
+    with pytest.raises(CompareError, match=rf"F{axis} \(F{axis}\) is .*times {how} than .*expected about") as error:
+        list(check_units(RUN, log, CompareSettings()))
+    assert f"e.g. {axis}={10.0**-power:g}*F{axis};" in str(error.value)
+    (warning,) = check_units(RUN, log, CompareSettings(unit="N"))
+    assert warning == str(error.value)
+
+
+def test_a_channel_without_a_signal_is_a_warning() -> None:
+    (warning,) = check_units(RUN, mapped(log_of(RUN), np.diag([1.0, 1.0, 0.0])), CompareSettings())
+    assert "Fz (Fz) is constant, expected about" in warning
+    assert not list(check_units(RUN, mapped(log_of(RUN), np.diag([3.0, 0.3, -5.0])), CompareSettings()))
 
 
 def test_newtons_called_kilonewtons_are_told(tmp_path: Path) -> None:

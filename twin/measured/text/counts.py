@@ -10,23 +10,30 @@ import numpy as np
 
 from twin.measured.axes import guess_map
 from twin.measured.table import Table
+from twin.measured.text.body import cut
 from twin.measured.text.marks import Marks, other
 from twin.measured.units import find_unit, split_unit
 
 _NUMBER = r"\d[\d.,'\u00a0\u202f ]*(?:e[+-]?\d+)?"
 _COUNT = r"(?:counts?|cnts?|cts|lsb|bits?|digits?|increments?)"
-_FORCE = r"(?:kN|mN|daN|N|lbf|lb|kgf)"
+_FORCE = r"(?:kN|mN|daN|N|klbf|lbf|lb|kgf)"
 _MARK = r"\s*[\"']?\s*[:=,;\t ]\s*[\"']?"
-#: ``Counts per Unit Force``, ``Fx counts/N``.
+#: ``Counts per Unit Force``, also as ``cpf``; ``Counts per Force Unit``, ``Counts per Unit``, ``Fx counts/N``.
 _COUNTS = re.compile(
-    rf"{_COUNT}[\s_]*(?:per|/)[\s_]*(?:unit[\s_]*)?(?:(?P<what>force|torque)s?|(?P<unit>{_FORCE})\b)", re.IGNORECASE
+    rf"{_COUNT}[\s_]*(?:per|pro|/)[\s_]*(?:(?:unit[\s_]*)?(?:(?P<what>force|torque)s?|(?P<unit>{_FORCE})\b)(?:[\s_]*units?)?"
+    r"|units?\b)|\b(?:cfg)?cp(?P<short>[ft])\b",
+    re.IGNORECASE,
 )
 #: ``0.01 N/count``, ``Scale [N/LSB]``, and ``1 count = 0.01 N``.
 _SIZE = re.compile(rf"(?P<unit>\b{_FORCE}|(?<=\d){_FORCE})\s*(?:/|per)\s*{_COUNT}\b", re.IGNORECASE)
 _EQUALS = re.compile(rf"\b{_COUNT}\s*[=:]\s*(?P<value>{_NUMBER})\s*(?P<unit>{_FORCE})\b", re.IGNORECASE)
 _AXIS = re.compile(r"\bF[\s_]*(?P<axis>[xyz])(?![a-z])", re.IGNORECASE)
-_UNIT = re.compile(rf"(?P<what>force|torque)[\s_]*units?{_MARK}(?P<unit>[^\s\"',;]+)", re.IGNORECASE)
+_UNIT = re.compile(rf"(?P<what>force|torque)[\s_]*units?{_MARK}(?P<unit>[a-z][^\s\"',;]*)", re.IGNORECASE)
 _TORQUE = re.compile(r"^[TM][\s_]*[xyz]\b", re.IGNORECASE)
+#: A scale in other words, whose sense is not known.
+_OTHER_SCALE = re.compile(
+    r"(?=.*\d).*(?:scal(?:e|ing)|factor|faktor|gain|sensitiv|resolution|calibrat|skalier)", re.IGNORECASE
+)
 _IN_COUNTS = re.compile(rf"(?:adc|raw|{_COUNT})$", re.IGNORECASE)
 
 
@@ -58,7 +65,7 @@ def scaled(table: Table, above: Sequence[str], delimiter: str | None, marks: Mar
     """
     scales = [scale for line in above if (scale := _scale(line, delimiter, marks))]
     if not scales:
-        return table
+        return _doubted(table, above)
     stated = {m["what"].lower(): m["unit"] for line in above if (m := _UNIT.search(line))}
     forces = guess_map(table.names)
     axes = {} if forces is None else {name: axis for axis, name in forces.entries}
@@ -77,6 +84,18 @@ def scaled(table: Table, above: Sequence[str], delimiter: str | None, marks: Mar
     return replace(table, names=names, units=tuple(units), values=values, notes=tuple(notes))
 
 
+def _doubted(table: Table, above: Sequence[str]) -> Table:
+    """The table with a note where forces may be counts: whole numbers without a unit, below a line about a scale."""
+    forces = guess_map(table.names)
+    if forces is None or not any(map(_OTHER_SCALE.match, above)):
+        return table
+    columns = [table.names.index(name) for _, name in forces.entries]
+    if any(split_unit(table.names[i])[1] or table.units[i] or not _in_counts(table, i) for i in columns):
+        return table
+    line = next(line for line in above if _OTHER_SCALE.match(line))
+    return replace(table, notes=(*table.notes, f"forces are whole numbers, and not scaled by {cut(line)!r}"))
+
+
 def _scale(line: str, delimiter: str | None, marks: Marks) -> _Scale | None:
     """The scale that a line above the columns states."""
     axis = found["axis"].lower() if (found := _AXIS.search(line)) else ""
@@ -91,7 +110,7 @@ def _scale(line: str, delimiter: str | None, marks: Marks) -> _Scale | None:
         return _Scale("force", axis, tuple(1.0 / v for v in sizes), found["unit"]) if sizes else None
     if found := _COUNTS.search(line):
         counts = _values(line[found.end() :], delimiter, marks)
-        what = (found["what"] or "force").lower()
+        what = "torque" if (found["what"] or found["short"] or "f")[0] in "tT" else "force"
         return _Scale(what, axis, tuple(counts), found["unit"] or "") if counts else None
     return None
 
