@@ -82,6 +82,19 @@ def test_messages_are_clean(name: str, tmp_path: Path, capsys: pytest.CaptureFix
     assert not ACTING.search(printed)
 
 
+@pytest.mark.parametrize(
+    "command", ["gcode check", "gcode stats", "twin replay", "twin job", "twin info", "twin tools"]
+)
+def test_names_are_on_one_line(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program, name = command.split()
+    nc_file(tmp_path, "G0 X1 Q1\n" if name == "check" else "M30\n", "a\nerror: b\t[c].nc")
+    for file in ("a\nerror: b\t[c].nc", "none\nerror: b\t[c].nc"):
+        {"gcode": gcode.cli.run, "twin": twin.cli.run}[program]([name, str(tmp_path / file)])
+        printed = "".join(capsys.readouterr())
+        assert "\u240aerror: b\u2409[c].nc" in printed
+        assert "\nerror: b" not in printed
+
+
 def test_tables_take_no_text_as_markup(capsys: pytest.CaptureFixture[str]) -> None:
     CleanConsole().print(f"[/x] [red]{EVIL}", style="bold")
     printed = capsys.readouterr().out

@@ -7,7 +7,9 @@ from typing import IO
 
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
+from rich.text import Text
 
+from gcode.cli.name_lines import on_one_line
 from gcode.underline import harmless
 
 
@@ -28,6 +30,13 @@ class CleanConsole(Console):
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
         """The parts of what is printed; control codes of the console itself are marked as such and stay."""
+        if isinstance(renderable, Text):
+            plain = on_one_line(renderable.plain)
+            if plain != renderable.plain:
+                renderable = renderable.copy()
+                renderable.plain = plain
+        elif isinstance(renderable, str):
+            renderable = on_one_line(renderable)
         for segment in super().render(renderable, options):
             yield segment if segment.control else segment._replace(text=harmless(segment.text))
 

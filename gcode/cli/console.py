@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from gcode.cli.name_lines import on_one_line
 from gcode.underline import harmless, harmless_json
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def say(text: str, *, colour: str | None = None, error: bool = False) -> None:
         colour: name of a colour, for terminals.
         error: on standard error.
     """
-    typer.secho(harmless(text), fg=colour, err=error)
+    typer.secho(harmless(on_one_line(text)), fg=colour, err=error)
 
 
 def say_json(text: str) -> None:

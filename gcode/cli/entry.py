@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 import typer
 
 from gcode.cli import exit_codes
+from gcode.cli.name_lines import set_names
 from gcode.cli.signals import end_in_order, ignore_signals, report_stop
 from gcode.cli.streams import failed_output, finish_streams, prepare_streams
 from gcode.errors import GcodeError
@@ -72,6 +73,7 @@ def carry_out(app: typer.Typer, arguments: Sequence[str], name: str) -> int:
     """
     from gcode.cli.console import fail
 
+    set_names(arguments)
     try:
         code = app(args=list(arguments) or ["--help"], prog_name=name, standalone_mode=False)
         code = code if arguments else exit_codes.USAGE

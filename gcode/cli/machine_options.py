@@ -103,7 +103,10 @@ SearchPathOption = Annotated[
 ToolOption = Annotated[
     int | None,
     typer.Option(
-        metavar="N", min=0, help="Tool in the spindle when the program starts, 0 for none.", show_default=False
+        metavar="N",
+        min=0,
+        help="Tool in the spindle when the program starts, 0 for none; as in the settings or the job if not given.",
+        show_default=False,
     ),
 ]
 MCodeOption = Annotated[

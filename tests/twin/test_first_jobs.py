@@ -23,6 +23,8 @@ from twin.settings.toml_hints import hint
             "rapid_mm_min = 48,000",
             "write rapid_mm_min = 48000 or rapid_mm_min = 48.000, with a decimal point",
         ),
+        ("rapid_mm_min = 1,048,000", "write rapid_mm_min = 1048000, without marks between thousands"),
+        ("G54 = 0, -12.5, 0  # corner", "write G54 = [0, -12.5, 0], a list in brackets"),
         ("rapid_mm_min = 48.000,5", "write rapid_mm_min = 48000.5, without marks between thousands"),
         ("rapid_mm_min = 48'000", "write rapid_mm_min = 48000, without marks between thousands"),
         ("diameter_mm = 10.", "write diameter_mm = 10.0, with a digit on both sides of the point"),
@@ -61,6 +63,11 @@ def test_a_windows_path_whose_backslashes_are_escapes(tmp_path: Path) -> None:
         load_job(job_folder(tmp_path, program__file="C:\temp\new.nc"))
     with pytest.raises(JobError, match=r'output.mcap = "C:.temp.run.mcap": expected a path; a backslash begins'):
         load_job(job_folder(tmp_path, output__mcap="C:\temp\run.mcap"))
+
+
+def test_the_folder_of_a_job_may_have_any_name(tmp_path: Path) -> None:
+    (tmp_path / "a\nb").mkdir()
+    assert load_job(job_folder(tmp_path / "a\nb", output__mcap="a.mcap")).output.mcap == tmp_path / "a\nb/a.mcap"
 
 
 @pytest.mark.parametrize(

@@ -6,21 +6,24 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Strict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Strict
 
 Point: TypeAlias = Annotated[tuple[float, float, float], Strict(False)]
 
 
-def _without_escapes(path: Path) -> Path:
-    """The path; one with control characters is refused: in double quotes, TOML takes a backslash for an escape."""
-    if any(ord(letter) < 32 or ord(letter) == 127 for letter in str(path)):
+def _without_escapes(value: object) -> object:
+    """The value; a text with control characters is refused: in double quotes, TOML takes a backslash for an escape.
+
+    A path that is joined to its folder already is not a text: folders may have any name.
+    """
+    if isinstance(value, str) and any(ord(letter) < 32 or ord(letter) == 127 for letter in value):
         raise ValueError(
             "path: expected a path; a backslash begins an escape: write the path in single quotes, or / for each \\"
         )
-    return path
+    return value
 
 
-FilePath: TypeAlias = Annotated[Path, Strict(False), AfterValidator(_without_escapes)]
+FilePath: TypeAlias = Annotated[Path, Strict(False), BeforeValidator(_without_escapes)]
 
 
 class Table(BaseModel):

@@ -10,7 +10,11 @@ _END = r"\s*,?\s*(?:#.*)?$"
 #: Patterns of a line, the first that fits counts, and what to write.
 _HINTS: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], str]], ...] = (
     (
-        re.compile(_KEY + r"([-+]?\d+),(\d+)(?![\d.])"),
+        re.compile(_KEY + r"(?!\d{1,3}(?:,\d{3})+\s*(?:#|$))([-+]?[\d.]+\s*(?:,\s*[-+]?[\d.]+\s*){2,})" + _END),
+        lambda m: f"write {m[1]} = [{m[2].strip()}], a list in brackets",
+    ),
+    (
+        re.compile(_KEY + r"([-+]?\d+),(\d+)(?![\d.]|,\d)"),
         lambda m: _with_point(m[1], m[2], m[3]),
     ),
     (re.compile(_KEY + r"([-+]?\d*)\.(\d*)" + _END), lambda m: _with_digits(m[1], m[2], m[3])),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from gcode.cli.machine_options import MCodeOption, ProgramDialect, ToolOption
 from twin.cli import exit_codes
 from twin.cli.options import options_from
 from twin.drafting.settings import DraftSettings
@@ -26,16 +27,6 @@ class Engine(StrEnum):
 
     FAST = "fast"
     REFERENCE = "reference"
-
-
-class Dialect(StrEnum):
-    """Controls that a program is written for."""
-
-    FANUC = "fanuc"
-    HAAS = "haas"
-    LINUXCNC = "linuxcnc"
-    GRBL = "grbl"
-    AUTO = "auto"
 
 
 @options_from(DraftSettings, "drafting", omit=_OWN_OPTIONS, panel="Job of an NC program")
@@ -98,30 +89,14 @@ def replay(
         typer.Option(help="Geometry engine: fast, or the slow reference; the job's if not given.", show_default=False),
     ] = None,
     dialect: Annotated[
-        Dialect | None,
+        ProgramDialect | None,
         typer.Option(
             help="Control that the program is written for; auto takes the likeliest; the job's if not given.",
             show_default=False,
         ),
     ] = None,
-    tool: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N",
-            min=0,
-            help="Tool in the spindle when the program starts; the job's if not given.",
-            show_default=False,
-        ),
-    ] = None,
-    m_code: Annotated[
-        list[int] | None,
-        typer.Option(
-            metavar="N",
-            min=0,
-            help="Number of an M code of the machine builder that moves nothing; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
+    tool: ToolOption = None,
+    m_code: MCodeOption = None,
     threads: Annotated[
         int | None, typer.Option(min=1, max=64, help="Number of threads; all cores if not given.", show_default=False)
     ] = None,
