@@ -14,7 +14,7 @@ from twin.measured.axes import AxisMap, Term, aliases, guess_map
 from twin.measured.log import AXES, LARGEST, Channel, ForceLog, RawLog, gaps_of, vector
 from twin.measured.read import read_log
 from twin.measured.settings import AS_IN_FILE, LogReading
-from twin.measured.units import ANGLE_NAME, find_unit
+from twin.measured.units import ANGLE_NAME, LOGICAL, find_unit
 
 _TRIGGER = re.compile(r"trig|tacho|pulse|once|key[\s_]*phas|\bindex\b|z[\s_]*phase|marker", re.IGNORECASE)
 
@@ -129,6 +129,8 @@ def _newtons(raw: RawLog, channel: Channel, unit: str | None, *, scaled: bool) -
         return known[1], []
     if known is not None and known[0] in ("voltage", "charge") and scaled:
         return 1.0, [f"column {channel.name!r} in {stated}: the factor of the axis map is taken as N/{stated}"]
+    if stated == LOGICAL:
+        raise MeasuredError(f"{raw.source}: column {channel.name!r} holds true and false, expected forces")
     hint = "; with a known sensitivity give its factor in the map, e.g. x=2.5*" + channel.base if known else ""
     raise MeasuredError(
         f"{raw.source}: column {channel.name!r} is in {stated!r}, expected a unit of force (N, kN, lbf) or --unit{hint}"

@@ -8,6 +8,8 @@ from typing import Literal, TypeAlias
 
 Quantity: TypeAlias = Literal["time", "force", "angle", "moment", "voltage", "charge", "rate", "other"]
 
+#: Unit of columns of true and false.
+LOGICAL = "true or false"
 #: Unit in lower case, µ written as u: what it measures, and how many s, N, rad (N·m, V, pC, Hz) one of it is.
 _UNITS: dict[str, tuple[Quantity, float]] = {
     **dict.fromkeys(("s", "sec", "secs", "second", "seconds", "sek"), ("time", 1.0)),
@@ -35,6 +37,7 @@ _UNITS: dict[str, tuple[Quantity, float]] = {
     **dict.fromkeys(("hz", "s/s", "1/s", "samples/s"), ("rate", 1.0)),
     "khz": ("rate", 1e3),
     "rpm": ("other", 1.0),
+    LOGICAL: ("other", 1.0),
     **dict.fromkeys(
         ("digit", "digits", "count", "counts", "cnt", "cts", "adc", "bit", "bits", "lsb", "adu"), ("other", 1.0)
     ),

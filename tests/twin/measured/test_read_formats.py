@@ -138,3 +138,53 @@ def test_genuine_dynoware_exports_have_the_published_means(feed: int) -> None:
     np.testing.assert_allclose(log.force_n[steady].mean(axis=0), PUBLISHED[feed], atol=0.06)
     speed = spindle_speed(log, 2, 6000.0)
     assert speed is not None and abs(speed.rpm - 6000.0) < 1.0
+
+
+@pytest.mark.parametrize("imaginary", [0.0, 1.0])
+def test_complex_numbers_of_hdf5_are_one_force_only_without_an_imaginary_part(imaginary: float, tmp_path: Path) -> None:
+    import h5py
+
+    with h5py.File(tmp_path / "log.h5", "w") as file:
+        file["t"] = times()
+        file["Fx"] = forces()[:, 0] + 1j * imaginary
+        file["Fy"], file["Fz"] = forces()[:, 1], forces()[:, 2]
+        file["remark"] = ["a", "b"]
+    if imaginary:
+        with pytest.raises(MeasuredError, match=r"not read: Fx \(complex numbers, which are not one force"):
+            read_forces(tmp_path / "log.h5")
+    else:
+        log = read_forces(tmp_path / "log.h5")
+        np.testing.assert_allclose(log.force_n, forces())
+        assert "not read: remark (no numbers)" in log.notes
+
+
+def write_logical(path: Path) -> None:
+    """Forces along x as true and false, in the format of the suffix."""
+    import h5py
+    import pyarrow as pa
+    from nptdms import ChannelObject, TdmsWriter
+    from pyarrow import parquet
+    from scipy.io import savemat
+
+    columns = {"t": times(), "Fx": forces()[:, 0] > 0.0, "Fy": forces()[:, 1], "Fz": forces()[:, 2]}
+    if path.suffix == ".mat":
+        savemat(path, columns)
+    elif path.suffix == ".parquet":
+        parquet.write_table(pa.table(columns), path)
+    elif path.suffix == ".tdms":
+        with TdmsWriter(path) as writer:
+            writer.write_segment([ChannelObject("g", name, values) for name, values in columns.items()])
+    else:
+        with h5py.File(path, "w") as file:
+            for name, values in columns.items():
+                file[name] = values
+
+
+@pytest.mark.parametrize("suffix", [".mat", ".h5", ".parquet", ".tdms"])
+def test_true_and_false_are_not_forces(suffix: str, tmp_path: Path) -> None:
+    path = tmp_path / f"log{suffix}"
+    write_logical(path)
+    with pytest.raises(MeasuredError, match="column 'Fx' holds true and false, expected forces"):
+        read_forces(path)
+    log = read_forces(path, LogReading.model_validate({"map": "y=Fy,z=Fz", "trigger_column": "Fx"}))
+    assert log.trigger_s is not None

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from twin.arrays import FloatArray
 from twin.errors import MeasuredError
 from twin.measured.formats.arrays_in import clock_of, columns_table
 from twin.measured.formats.bounds import check_size
 from twin.measured.formats.hdf5_chunks import check_chunks
 from twin.measured.formats.one_clock import Named
 from twin.measured.table import Table
+from twin.measured.units import LOGICAL
 
+#: The reason why complex numbers are not read.
+_NOT_ONE_FORCE = "complex numbers, which are not one force: store their real part, or abs, as one"
 _UNIT_KEYS = ("unit", "units", "unit_string", "engineeringunit", "si_unit", "y_unit")
 
 
@@ -31,6 +35,7 @@ def read_hdf5(path: Path, group: str | None = None) -> Table:
 
     arrays: list[Named] = []
     scalars: dict[str, float] = {}
+    refused: list[str] = []
     sizes: list[int] = []
 
     def visit(name: str, node: Any) -> None:
@@ -40,7 +45,8 @@ def read_hdf5(path: Path, group: str | None = None) -> Table:
             sizes.append(8 * int(node.size) * max(len(node.dtype.names or ()), 1))
             check_size(path, sum(sizes), "its data sets")
             check_chunks(path, node)
-            _dataset(name, node, arrays, scalars)
+            reason = _dataset(name, node, arrays, scalars)
+            refused.extend([f"{name} ({reason})"] if reason else [])
 
     try:
         with h5py.File(path, "r") as file:
@@ -51,27 +57,47 @@ def read_hdf5(path: Path, group: str | None = None) -> Table:
         raise
     except Exception as error:  # h5py raises many kinds on damaged files
         raise MeasuredError(f"{path}: no HDF5 file that can be read: {error}") from error
-    return columns_table(path, "HDF5", arrays, scalars, group)
+    return columns_table(path, "HDF5", arrays, scalars, group, refused)
 
 
-def _dataset(name: str, node: Any, arrays: list[Named], scalars: dict[str, float]) -> None:
-    """A data set's columns, each with its unit."""
+def _dataset(name: str, node: Any, arrays: list[Named], scalars: dict[str, float]) -> str:
+    """Take a data set's columns, each with its unit; the reason where it cannot be read."""
     if node.dtype.names:
         units = _field_units(node.attrs, node.dtype.names)
-        fields = [f for f in node.dtype.names if node.dtype[f].kind in "fiub"]
-        arrays += [Named(f"{name}/{f}", units.get(f, ""), np.asarray(node[f], np.float64)) for f in fields]
-        return
-    if node.dtype.kind not in "fiub":
-        return
+        reasons = []
+        for each in node.dtype.names:
+            values, reason = _numbers(node.dtype[each], lambda each=each: node[each])
+            if values is None:
+                reasons.append(f"{each}: {reason}")
+            else:
+                arrays.append(Named(f"{name}/{each}", _unit(node.dtype[each], units.get(each, "")), values))
+        return "; ".join(reasons)
     if node.size == 1:
         _scalar(name, node[()], scalars)
     elif node.size:
-        values = np.asarray(node[()], np.float64)
+        values, reason = _numbers(node.dtype, lambda: node[()])
+        if values is None:
+            return reason
         scale, offset = (_number(node.attrs, key) for key in ("scale_factor", "add_offset"))
         if scale is not None or offset is not None:
             values = values * (1.0 if scale is None else scale) + (offset or 0.0)
         rate_hz, start_s = clock_of({key: v for key in node.attrs if (v := _number(node.attrs, key)) is not None})
-        arrays.append(Named(name, unit_of(node.attrs), values, rate_hz, start_s))
+        arrays.append(Named(name, _unit(node.dtype, unit_of(node.attrs)), values, rate_hz, start_s))
+    return ""
+
+
+def _numbers(kind: np.dtype[Any], read: Callable[[], Any]) -> tuple[FloatArray | None, str]:
+    """Stored values as numbers, complex ones where the imaginary part is zero throughout; else None and the reason."""
+    if kind.kind in "fiub":
+        return np.asarray(read(), np.float64), ""
+    if kind.kind != "c":
+        return None, "no numbers"
+    values = np.asarray(read())
+    return (None, _NOT_ONE_FORCE) if np.any(values.imag) else (values.real.astype(np.float64), "")
+
+
+def _unit(kind: np.dtype[Any], stated: str) -> str:
+    return LOGICAL if kind.kind == "b" else stated
 
 
 def _scalar(name: str, value: Any, scalars: dict[str, float]) -> None:

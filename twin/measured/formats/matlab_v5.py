@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.measured.formats.matlab_values import COMPLEX, Cell, Opaque, StructArray, Value
+from twin.measured.formats.matlab_values import COMPLEX, Cell, Channel, Opaque, StructArray, Value
+from twin.measured.units import LOGICAL
 
 _HEADER_BYTES = 128
 _MATRIX, _COMPRESSED = 14, 15
@@ -24,8 +25,8 @@ _TEXT_CODES = {16: "utf-8", 17: "utf-16", 18: "utf-32"}
 #: Classes of arrays: 1 cells, 2 structs, 3 objects of the former kind, 4 characters, 6 to 15 numbers.
 _OBJECT, _OPAQUE = 3, 17
 _OTHER_CLASSES = {5: "sparse matrix", 16: "function handle"}
-#: Flag of an array whose numbers have an imaginary part.
-_IMAGINARY = 0x800
+#: Flags of an array whose numbers have an imaginary part, or are true and false.
+_IMAGINARY, _TRUE_FALSE = 0x800, 0x200
 _NUMERIC = range(6, 16)
 #: Values nested deeper than this are not a log.
 _MOST_LEVELS = 24
@@ -116,8 +117,8 @@ def _matrix(body: memoryview, order: str, level: int) -> tuple[str, Value | None
         return "", None
     parts = _Bytes(body, order)
     flags = _integers(parts, order)
-    kind = int(flags[0]) & 0xFF if len(flags) else 0
-    imaginary = bool(len(flags) and int(flags[0]) & _IMAGINARY)
+    flag = int(flags[0]) if len(flags) else 0
+    kind = flag & 0xFF
     if kind == _OPAQUE:
         name, _, class_name = (_text(parts) for _ in range(3))
         return name, Opaque(class_name)
@@ -125,9 +126,9 @@ def _matrix(body: memoryview, order: str, level: int) -> tuple[str, Value | None
     if not shape or min(shape) < 0:
         raise DamagedError(f"dimensions {shape}")
     name, value = _text(parts), _value(parts, order, shape, kind, level)
-    if imaginary and kind in _NUMERIC and np.any(_numbers(parts, order, shape)):
+    if flag & _IMAGINARY and kind in _NUMERIC and np.any(_numbers(parts, order, shape)):
         return name, Opaque(COMPLEX)
-    return name, value
+    return name, Channel(value, LOGICAL) if flag & _TRUE_FALSE and isinstance(value, np.ndarray) else value
 
 
 def _value(parts: _Bytes, order: str, shape: tuple[int, ...], kind: int, level: int) -> Value:

@@ -12,6 +12,7 @@ from twin.measured.formats.bounds import check_size
 from twin.measured.formats.hdf5 import attribute_text, unit_of
 from twin.measured.formats.hdf5_chunks import check_chunks
 from twin.measured.formats.matlab_values import COMPLEX, Cell, Channel, Opaque, StructArray, Value
+from twin.measured.units import LOGICAL
 
 #: Values nested deeper than this are not a log; references may form a ring.
 _MOST_LEVELS = 24
@@ -80,7 +81,7 @@ class _Reader:
             return "".join(chr(c) for c in np.ravel(node[()]).tolist() if 0 < c < 0xD800)
         stored = node[()]
         values = np.asarray(stored[part] if part else stored, np.float64).T
-        unit = unit_of(node.attrs)
+        unit = LOGICAL if class_name == "logical" else unit_of(node.attrs)
         return Channel(values, unit) if unit else values
 
     def _struct(self, group: Any, level: int) -> Value:

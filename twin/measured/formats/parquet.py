@@ -10,6 +10,7 @@ import numpy as np
 from twin.errors import MeasuredError
 from twin.measured.formats.bounds import check_size
 from twin.measured.table import Table, table
+from twin.measured.units import LOGICAL
 
 
 def read_parquet(path: Path) -> Table:
@@ -68,6 +69,8 @@ def _numbers(column: Any, kind: Any) -> tuple[Any, str]:
         return column.cast(pa.int32() if pa.types.is_time32(kind) else pa.int64()).to_numpy() * scale, "s"
     if pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_decimal(kind):
         return column.cast(pa.float64()).to_numpy().astype(np.float64), ""
+    if pa.types.is_boolean(kind):
+        return column.cast(pa.int8()).cast(pa.float64()).to_numpy(), LOGICAL
     return None, ""
 
 

@@ -17,6 +17,7 @@ from twin.measured.formats.arrays_in import columns_table
 from twin.measured.formats.one_clock import Named
 from twin.measured.formats.tdms_parts import Part, parts_of, times_of
 from twin.measured.table import Table
+from twin.measured.units import LOGICAL
 
 _LONGEST_NOTE = 120
 #: LabVIEW writes the beginning of its own time where no start is known.
@@ -41,10 +42,12 @@ def read_tdms(path: Path, group: str | None = None) -> Table:
     arrays: list[Named] = []
     starts: dict[str, tuple[Any, float]] = {}
     times: dict[str, FloatArray | None] = {}
+    refused: list[str] = []
     for part in file.groups():
         for channel in part.channels():
             values = _numbers(channel)
             if values is None:
+                refused.extend([f"{part.name}/{channel.name} (no numbers)"] if len(channel) > 1 else [])
                 continue
             name, properties = f"{part.name}/{channel.name}", channel.properties
             step = float(properties.get("wf_increment", 0.0))
@@ -53,7 +56,7 @@ def read_tdms(path: Path, group: str | None = None) -> Table:
             if step > 0.0:
                 times[name] = times_of(path, name, parts.get(channel.path, []), len(values), step)
     arrays += _time_arrays(path, arrays, times, starts)
-    read = columns_table(path, "TDMS", _started(arrays, starts), {}, group)
+    read = columns_table(path, "TDMS", _started(arrays, starts), {}, group, refused)
     return replace(read, notes=(*read.notes, *notes))
 
 
@@ -126,6 +129,8 @@ def _time_arrays(
 
 
 def _unit(channel: Any) -> str:
+    if channel.dtype.kind == "b":
+        return LOGICAL
     return next((str(channel.properties[k]) for k in _UNIT_KEYS if channel.properties.get(k)), "")
 
 
