@@ -65,8 +65,8 @@ def read_numbers(path: str | PathLike[str], topic: str | None = None) -> TopicNu
             log = ForeignLog(file)
             found = _choose(file.path, log.channels, topic)
             rows = _Rows()
-            for message in log.messages(found):
-                rows.add(message, MessageFields.of(message, rows.classes))
+            for number, message in enumerate(log.messages(found), 1):
+                rows.decode(file.path, number, message)
     except ArchiveError:
         raise
     except Exception as error:  # the libraries raise many kinds on damaged files
@@ -92,6 +92,21 @@ class _Rows:
     values: dict[str, array[float]] = dataclasses.field(default_factory=dict)
     lists: dict[str, int] = dataclasses.field(default_factory=dict)
     classes: dict[int, Any] = dataclasses.field(default_factory=dict)
+
+    def decode(self, path: Path, number: int, message: LogMessage) -> None:
+        """Decode a message and take its numbers.
+
+        Raises:
+            ArchiveError: it cannot be decoded; the message names it by its number on the topic.
+        """
+        try:
+            self.add(message, MessageFields.of(message, self.classes))
+        except Exception as error:  # the libraries raise many kinds on damaged messages
+            encoding = {"json": "JSON"}.get(message.channel.message_encoding, message.channel.message_encoding)
+            why = "values nested too deep" if isinstance(error, RecursionError) else str(error).strip("\"'")
+            raise ArchiveError(
+                f"{path}: message {number} on {message.channel.topic} cannot be read as {encoding}: {why}"
+            ) from error
 
     def add(self, message: LogMessage, fields: MessageFields) -> None:
         for name, value in fields.numbers.items():

@@ -63,7 +63,7 @@ def run_info(path: str | PathLike[str], *, verify: bool = False) -> RunInfo:
             found.damage = str(error)
         if found.index is None or found.damage is not None:
             found.read_all(decoder)
-        whole = file.footer() is not None and found.damage is None
+        whole = found.damage is None and file.footer() is not None
         summary = found.summary
         return RunInfo(
             path=file.path,

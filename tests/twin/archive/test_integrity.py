@@ -10,6 +10,7 @@ import pytest
 from mcap.opcode import Opcode
 
 from twin.archive import export_forces, read_run, run_info, run_writer
+from twin.archive.container.frames import FOOTER_BYTES
 from twin.cli import run
 from twin.errors import ArchiveError
 from twin.record import Record
@@ -120,6 +121,14 @@ def test_the_closing_magic(data: bytes, at_end: bytes, problem: str | None, tmp_
     else:
         with pytest.raises(ArchiveError, match=problem):
             list(read_run(path))
+
+
+@pytest.mark.parametrize("bit", range(8))
+def test_a_footer_that_is_another_record_is_damage(data: bytes, bit: int, tmp_path: Path) -> None:
+    at = len(data) - FOOTER_BYTES
+    (tmp_path / "run.mcap").write_bytes(data[:at] + bytes([data[at] ^ 1 << bit]) + data[at + 1 :])
+    with pytest.raises(ArchiveError, match=rf"damaged at byte {at}: "):
+        list(read_run(tmp_path / "run.mcap"))
 
 
 def test_zeros_before_further_records_are_damage(data: bytes, tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ def plain(k: int) -> dict[str, Any]:
 
 def write(
     path: Path,
-    make: Callable[[int], dict[str, Any]],
+    make: Callable[[int], dict[str, Any] | bytes],
     *,
     log_ns: Callable[[int], int] = lambda k: BEGIN * 10**9 + k * STEP,
     sent_ns: Callable[[int], int] = lambda k: BEGIN * 10**9 + k * STEP,
@@ -63,7 +63,8 @@ def write(
             writer.register_channel(topic=name, message_encoding=encoding, schema_id=schema)
         channel = writer.register_channel(topic=topic, message_encoding="json", schema_id=schema)
         for k in order:
-            data = json.dumps(make(k)).encode()
+            made = make(k)
+            data = made if isinstance(made, bytes) else json.dumps(made).encode()
             writer.add_message(channel_id=channel, log_time=log_ns(k), publish_time=sent_ns(k), data=data)
         writer.finish()
     return path
@@ -125,6 +126,21 @@ def test_lists_are_columns(tmp_path: Path) -> None:
 def test_long_lists_are_named(tmp_path: Path) -> None:
     path = write(tmp_path / "a.mcap", lambda k: {f"f{a}": [v] * 100 for a, v in force(k).items()})
     with pytest.raises(MeasuredError, match=r"no columns of numbers .* not read: fx \(list of 100 numbers\), fy"):
+        read_forces(path)
+
+
+@pytest.mark.parametrize(
+    ("data", "why"),
+    [
+        (b'{"Fx": 1, Fy', "Expecting property name"),
+        (b"[" * 100_000, "values nested too deep"),
+        (b'{"Fx": 1' + b"0" * 400 + b"}", "int too large"),
+        (b'{"Fx": \xff}', "invalid start byte"),
+    ],
+)
+def test_a_message_that_cannot_be_read_is_named(data: bytes, why: str, tmp_path: Path) -> None:
+    path = write(tmp_path / "a.mcap", lambda k: data if k == 100 else plain(k))
+    with pytest.raises(MeasuredError, match=rf"a.mcap: message 101 on /wrench cannot be read as JSON: .*{why}"):
         read_forces(path)
 
 

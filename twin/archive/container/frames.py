@@ -137,12 +137,18 @@ class McapFile:
         return Frame(head.offset, head.opcode, self.read(head.offset + HEAD.size, head.length))
 
     def footer(self) -> Footer | None:
-        """The footer, or None for an incomplete file."""
+        """The footer, or None for an incomplete file.
+
+        Raises:
+            ArchiveError: the file has its end, but no footer before it.
+        """
         start = self.size - FOOTER_BYTES
         if start < len(MAGIC) or self.read(self.size - len(MAGIC), len(MAGIC)) != MAGIC:
             return None
         head = HEAD.unpack(self.read(start, HEAD.size))
-        return Footer.read(stream(self.read(start + HEAD.size, 20))) if head == (Opcode.FOOTER, 20) else None
+        if head != (Opcode.FOOTER, 20):
+            raise self.damaged(start, "no footer before the end of the file")
+        return Footer.read(stream(self.read(start + HEAD.size, 20)))
 
     def chunk_head(self, head: Head) -> ChunkHead:
         """The fields of a chunk.
