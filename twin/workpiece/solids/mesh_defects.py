@@ -20,6 +20,8 @@ _SLENDER = 0.05
 _POINTS, _MOST_EDGES = 9, 300
 #: Edges run in opposite directions where the product of their directions is less than this.
 _OPPOSITE = -0.95
+#: A body is a sheet where its areas add up, as vectors, to more than this part of their sum.
+_SHEET = 0.8
 #: Most openings that are measured.
 _MOST_OPENINGS = 200
 
@@ -114,14 +116,19 @@ def _openings(vertices_mm: FloatArray, mesh: Mesh) -> Iterator[str]:
     graph = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(used),) * 2)
     total, labels = connected_components(graph, directed=False)
     which = labels[pairs[:, 0]]
+    flat = _flat_bodies(vertices_mm, mesh)
+    middles = vertices_mm[directed].mean(axis=1)
     kinds: dict[str, list[tuple[float, float, NDArray[np.int64]]]] = {}
     for opening in range(min(total, _MOST_OPENINGS)):
         own = directed[which == opening]
-        gap, length = _size(vertices_mm[own])
+        near = _near(middles, vertices_mm[own])
+        gap, length = _size(vertices_mm[own], vertices_mm[directed[near[which[near] != opening]]])
         if np.any(np.sort(own[:, 0]) != np.sort(own[:, 1])):
             kind = "loose sheet"
+        elif gap <= max(WELD_MM, _SLENDER * length):
+            kind = "T-vertex seam" if gap <= WELD_MM else "crack"
         else:
-            kind = "T-vertex seam" if gap <= WELD_MM else "crack" if gap <= _SLENDER * length else "hole"
+            kind = "loose sheet" if flat[own[0, 0]] else "hole"
         kinds.setdefault(kind, []).append((gap, length, own))
     part = f" among the first {_MOST_OPENINGS} of {total} openings" if total > _MOST_OPENINGS else ""
     for kind, found in kinds.items():
@@ -134,7 +141,19 @@ def _openings(vertices_mm: FloatArray, mesh: Mesh) -> Iterator[str]:
         yield f"{count(len(found), kind)} of {edges}{part}, {which_one}{size}: {positions(vertices_mm, own)}"
 
 
-def _size(ends_mm: FloatArray) -> tuple[float, float]:
+def _flat_bodies(vertices_mm: FloatArray, mesh: Mesh) -> NDArray[np.bool_]:
+    """Vertices of bodies that are a sheet: their areas point in one direction, shape (n,)."""
+    a, b, c = (vertices_mm[mesh.triangles[:, i]] for i in range(3))
+    areas = np.cross(b - a, c - a)
+    body_of = bodies(len(vertices_mm), mesh.triangles)
+    sums = np.column_stack([np.bincount(body_of, weights=areas[:, i]) for i in range(3)])
+    sheet = np.linalg.norm(sums, axis=1) > _SHEET * np.bincount(body_of, weights=np.linalg.norm(areas, axis=1))
+    flat = np.zeros(len(vertices_mm), dtype=np.bool_)
+    flat[mesh.triangles] = sheet[body_of][:, None]
+    return flat
+
+
+def _size(ends_mm: FloatArray, others_mm: FloatArray) -> tuple[float, float]:
     """Width and length of an opening.
 
     The width is measured between edges that run in opposite directions, as the two sides of an opening do. That of a
@@ -142,6 +161,7 @@ def _size(ends_mm: FloatArray) -> tuple[float, float]:
 
     Args:
         ends_mm: shape (k, 2, 3), its edges, each in the direction of its triangle.
+        others_mm: shape (m, 2, 3), the edges of other openings near it: two parts that miss each other have one each.
     """
     starts, along = ends_mm[:, 0], ends_mm[:, 1] - ends_mm[:, 0]
     lengths = np.maximum(np.linalg.norm(along, axis=1), 1e-300)
@@ -152,6 +172,24 @@ def _size(ends_mm: FloatArray) -> tuple[float, float]:
     long = np.flatnonzero(lengths >= most)
     chosen = long if len(long) else np.arange(len(lengths))
     chosen = chosen[:: max(1, len(chosen) // _MOST_EDGES)]
+    widest = _widest(ends_mm, chosen, np.concatenate((ends_mm, others_mm[:_MOST_EDGES])))
+    length = 0.5 * circumference
+    if widest == 0.0 or (most > _SLENDER * length and most < widest):
+        return most, length
+    return widest, length
+
+
+def _near(points_mm: FloatArray, ends_mm: FloatArray) -> NDArray[np.int64]:
+    """Numbers of the points in the box of edges, with a margin as wide as a crack along them may be."""
+    margin = _SLENDER * 0.5 * float(np.linalg.norm(ends_mm[:, 1] - ends_mm[:, 0], axis=1).sum())
+    low, high = ends_mm.min(axis=(0, 1)) - margin, ends_mm.max(axis=(0, 1)) + margin
+    return np.flatnonzero(np.all((points_mm >= low) & (points_mm <= high), axis=1))
+
+
+def _widest(ends_mm: FloatArray, chosen: NDArray[np.int64], sides_mm: FloatArray) -> float:
+    """Largest distance of some edges from those that run in the opposite direction, 0 for none."""
+    starts, along = sides_mm[:, 0], sides_mm[:, 1] - sides_mm[:, 0]
+    lengths = np.maximum(np.linalg.norm(along, axis=1), 1e-300)
     share = np.linspace(0.0, 1.0, _POINTS)[:, None]
     unit = along / lengths[:, None]
     widest = 0.0
@@ -159,15 +197,22 @@ def _size(ends_mm: FloatArray) -> tuple[float, float]:
         opposite = np.flatnonzero(unit @ unit[k] < _OPPOSITE)
         if len(opposite) == 0:
             continue
-        points = starts[k] + share * along[k]
+        points = ends_mm[k, 0] + share * along[k]
         offset = points[:, None, :] - starts[opposite]
         at = np.clip(np.einsum("pek,ek->pe", offset, unit[opposite]), 0.0, lengths[opposite])
         distance = np.linalg.norm(offset - at[..., None] * unit[opposite], axis=2)
         widest = max(widest, float(distance.min(axis=1).max()))
-    length = 0.5 * circumference
-    if widest == 0.0 or (most > _SLENDER * length and most < widest):
-        return most, length
-    return widest, length
+    return widest
+
+
+def bodies(count: int, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The number of the connected body that each triangle belongs to."""
+    rows = np.concatenate((triangles[:, 0], triangles[:, 1]))
+    columns = np.concatenate((triangles[:, 1], triangles[:, 2]))
+    graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(count, count))
+    _, labels = connected_components(graph, directed=False)
+    _, body_of = np.unique(labels[triangles[:, 0]], return_inverse=True)
+    return body_of.astype(np.int64)
 
 
 def positions(vertices_mm: FloatArray, ends: NDArray[np.int64]) -> str:

@@ -6,12 +6,10 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from twin.arrays import FloatArray
 from twin.errors import MeshError
-from twin.workpiece.solids.mesh_defects import defects
+from twin.workpiece.solids.mesh_defects import bodies, defects
 from twin.workpiece.solids.mesh_defects import point as text_of
 from twin.workpiece.solids.weld import Mesh
 
@@ -37,15 +35,15 @@ def check_orientation(name: str, vertices_mm: FloatArray, triangles: NDArray[np.
     Raises:
         MeshError: nothing enclosed, or a body inside out.
     """
-    bodies = _bodies(len(vertices_mm), triangles)
+    body_of = bodies(len(vertices_mm), triangles)
     a, b, c = (vertices_mm[triangles[:, i]] - vertices_mm[triangles[0, 0]] for i in range(3))
-    volumes = np.bincount(bodies, weights=np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0)
+    volumes = np.bincount(body_of, weights=np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0)
     extent = math.prod(float(np.ptp(column)) for column in vertices_mm.T)
     if np.abs(volumes).max() <= 1e-12 * extent:
         raise MeshError(f"{name}: the surface encloses no volume; expected a solid")
     for body in np.flatnonzero(volumes < -1e-12 * extent):
-        point = vertices_mm[triangles[np.argmax(bodies == body), 0]]
-        if winding_number(point, vertices_mm, triangles[bodies != body]) < 0.5:
+        point = vertices_mm[triangles[np.argmax(body_of == body), 0]]
+        if winding_number(point, vertices_mm, triangles[body_of != body]) < 0.5:
             at = text_of(point)
             which = f" (body {body + 1} of {len(volumes)})" if len(volumes) > 1 else ""
             raise MeshError(
@@ -62,13 +60,3 @@ def winding_number(point_mm: FloatArray, vertices_mm: FloatArray, triangles: NDA
     dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
     angles = 2.0 * np.arctan2(volume, la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb)
     return float(angles.sum()) / (4.0 * np.pi)
-
-
-def _bodies(count: int, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The number of the connected body that each triangle belongs to."""
-    rows = np.concatenate((triangles[:, 0], triangles[:, 1]))
-    columns = np.concatenate((triangles[:, 1], triangles[:, 2]))
-    graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(count, count))
-    _, labels = connected_components(graph, directed=False)
-    _, bodies = np.unique(labels[triangles[:, 0]], return_inverse=True)
-    return bodies.astype(np.int64)

@@ -1,8 +1,8 @@
 """STL files: the corners of their triangles, from binary and from text files.
 
 Text files are read by their keywords, whatever the case, the line ends and the spaces between them; a mark of the
-encoding at the start, comments and padding at the end are skipped, and normals may be missing. Whatever else is in a
-file is refused with its line.
+encoding at the start, comments and padding at the end are skipped, and normals, which are not used, may be missing or
+incomplete. Whatever else is in a file is refused with its line.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribut
 
 _CORNER = r"vertex\s+(\S++)\s+(\S++)\s+(\S++)\s+"
 _FACET = re.compile(
-    rf"facet(?:\s+normal\s+\S++\s+\S++\s+\S++)?\s+outer\s*loop\s+{3 * _CORNER}end\s*loop\s+end\s*facet\b",
+    rf"facet(?:\s+normal(?:\s+(?!outer\b)\S++){{0,3}}+)?\s+outer\s*loop\s+{3 * _CORNER}end\s*loop\s+end\s*facet\b",
     re.IGNORECASE,
 )
 #: Comments, which the format does not have: a line, or the rest of one after a blank.

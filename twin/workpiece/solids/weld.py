@@ -71,6 +71,8 @@ def welded(vertices_mm: FloatArray, mesh: Mesh) -> tuple[Mesh, str]:
     """
     joined, moved, widest = _joined(vertices_mm, mesh)
     divided, count, off = _divided(vertices_mm, joined)
+    if count and not divided.closed:
+        divided = _without_idle_cuts(joined, divided)
     done = []
     if moved:
         done.append(f"{_vertices(moved)} on open edges welded, at most {round(widest, 5):.2g} mm apart")
@@ -106,19 +108,28 @@ def _joined(vertices_mm: FloatArray, mesh: Mesh) -> tuple[Mesh, int, float]:
 
 
 def _divided(vertices_mm: FloatArray, mesh: Mesh) -> tuple[Mesh, int, float]:
-    """Triangles divided where vertices of others lie on their open edges; how many edges were, and how far off."""
+    """Triangles divided where vertices of others lie on their open edges; how many edges were, and how far off.
+
+    An edge is tested once: later rounds add no vertices to open edges.
+    """
     count, widest = 0, 0.0
+    tested = np.zeros(0, dtype=np.int64)
     for _ in range(_ROUNDS):
-        sides = np.flatnonzero(mesh.open[mesh.edges.sides].ravel())
+        keys = mesh.edges.ends @ (len(vertices_mm), 1)
+        wanted = mesh.open & ~np.isin(keys, tested)
+        sides = np.flatnonzero(wanted[mesh.edges.sides].ravel())
         if len(sides) == 0:
             break
+        done: list[int] = []
         border = np.unique(mesh.edges.ends[mesh.open])
         tree = _tree(vertices_mm[border])
         gone: dict[int, list[list[int]]] = {}
         for triangle, side in zip(*(part.tolist() for part in np.divmod(sides, 3)), strict=True):
             if triangle in gone:
                 continue  # its other sides come in the next round
-            a, b, c = np.roll(mesh.triangles[triangle], -side).tolist()
+            done.append(keys[mesh.edges.sides[triangle, side]])
+            corners = mesh.triangles[triangle].tolist()
+            a, b, c = corners[side:] + corners[:side]
             inner, off = _on_edge(vertices_mm, a, b, border, tree)
             if inner:
                 chain = [a, *inner, b]
@@ -127,7 +138,24 @@ def _divided(vertices_mm: FloatArray, mesh: Mesh) -> tuple[Mesh, int, float]:
         if not gone:
             break
         mesh = _replaced(mesh, gone)
+        tested = np.concatenate((tested, np.array(done, dtype=np.int64)))
     return mesh, count, widest
+
+
+def _without_idle_cuts(joined: Mesh, divided: Mesh) -> Mesh:
+    """The divided mesh with those triangles whole again whose divided edges stay open, to show openings as they are."""
+    count = int(joined.triangles.max()) + 1
+    before = joined.edges.ends @ (count, 1)
+    while True:
+        new = divided.open & ~np.isin(divided.edges.ends @ (count, 1), before)
+        idle = np.unique(divided.numbers[new[divided.edges.sides].any(axis=1)])
+        if len(idle) == 0:
+            return divided
+        kept, whole = ~np.isin(divided.numbers, idle), np.isin(joined.numbers, idle)
+        divided = Mesh.of(
+            np.concatenate((divided.triangles[kept], joined.triangles[whole])),
+            np.concatenate((divided.numbers[kept], joined.numbers[whole])),
+        )
 
 
 def _on_edge(
@@ -137,6 +165,8 @@ def _on_edge(
     start, along = vertices_mm[a], vertices_mm[b] - vertices_mm[a]
     length = float(np.linalg.norm(along))
     near = border[np.sort(tree.query_ball_point(start + 0.5 * along, 0.5 * length + WELD_MM))]
+    if len(near) < 3:
+        return [], 0.0
     offset = vertices_mm[near] - start
     at = offset @ along / length
     off = np.linalg.norm(offset - np.outer(at / length, along), axis=1)
