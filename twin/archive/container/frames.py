@@ -148,7 +148,8 @@ class McapFile:
         head = HEAD.unpack(self.read(start, HEAD.size))
         if head != (Opcode.FOOTER, 20):
             raise self.damaged(start, "no footer before the end of the file")
-        return Footer.read(stream(self.read(start + HEAD.size, 20)))
+        found: Footer = Footer.read(stream(self.read(start + HEAD.size, 20)))
+        return found
 
     def chunk_head(self, head: Head) -> ChunkHead:
         """The fields of a chunk.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +67,7 @@ def _dataset(name: str, node: Any, arrays: list[Named], scalars: dict[str, float
         units = _field_units(node.attrs, node.dtype.names)
         reasons = []
         for each in node.dtype.names:
-            values, reason = _numbers(node.dtype[each], lambda each=each: node[each])
+            values, reason = _numbers(node.dtype[each], partial(node.__getitem__, each))
             if values is None:
                 reasons.append(f"{each}: {reason}")
             else:
@@ -75,7 +76,7 @@ def _dataset(name: str, node: Any, arrays: list[Named], scalars: dict[str, float
     if node.size == 1:
         _scalar(name, node[()], scalars)
     elif node.size:
-        values, reason = _numbers(node.dtype, lambda: node[()])
+        values, reason = _numbers(node.dtype, partial(node.__getitem__, ()))
         if values is None:
             return reason
         scale, offset = (_number(node.attrs, key) for key in ("scale_factor", "add_offset"))
