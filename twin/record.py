@@ -53,6 +53,8 @@ class RunHeader:
         slice_pitch_mm: pitch of the slices along x, y and z.
         tools: the tools of the job.
         planned_time_s: machine time of the whole program.
+        work_bounds_mm: shape (2, 3), corners of the box of the tool tip in feed motions below the top of the stock;
+            None without any, and in runs of earlier versions.
         force_on: always ``"tool"`` in records; readers change the sign for the workpiece.
         parameters: every setting that affects the result, as text by job-file key path.
         attachments: job file, sizes of tools from libraries, NC program, and stock STL if there is one.
@@ -65,6 +67,7 @@ class RunHeader:
     slice_pitch_mm: tuple[float, float, float]
     tools: tuple[ToolRecord, ...]
     planned_time_s: float
+    work_bounds_mm: FloatArray | None = None
     force_on: ForceOn = "tool"
     parameters: dict[str, str]
     attachments: tuple[Attachment, ...] = ()

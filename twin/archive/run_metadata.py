@@ -69,6 +69,8 @@ def header_metadata(header: RunHeader) -> dict[str, str]:
     data = {name: str(getattr(header, name)) for name in _HEADER_TEXT}
     data |= {name: _json(getattr(header, name)) for name in _HEADER_JSON}
     data |= {"job": header.job} if header.job else {}
+    work = header.work_bounds_mm
+    data |= {} if work is None else {"work_bounds_mm": _json(work.tolist())}
     return data | {"stock_bounds_mm": _json(header.stock_bounds_mm.tolist())}
 
 
@@ -88,11 +90,13 @@ def to_header(data: Mapping[str, str], parameters: Mapping[str, str], files: Seq
         for row in json.loads(table.data)
     ]
     values: dict[str, Any] = {name: data[name] for name in _HEADER_TEXT}
+    work = data.get("work_bounds_mm")
     return RunHeader(
         **values,
         stock_bounds_mm=frozen(json.loads(data["stock_bounds_mm"]), "stock_bounds_mm", (2, 3)),
         slice_pitch_mm=_tuple(json.loads(data["slice_pitch_mm"])),
         planned_time_s=json.loads(data["planned_time_s"]),
+        work_bounds_mm=frozen(json.loads(work), "work_bounds_mm", (2, 3)) if work else None,
         tools=tuple(tools),
         parameters=dict(parameters),
         attachments=tuple(f for f in files if f is not table),

@@ -14,6 +14,7 @@ from twin.arrays import frozen
 from twin.job import Job
 from twin.record import Attachment, RunHeader, ToolRecord
 from twin.settings.toml_text import toml_text
+from twin.simulation.program import Plan
 from twin.version import __version__
 from twin.workpiece.trislice import TriSlices
 
@@ -21,11 +22,12 @@ _LIBRARIES = ("numpy", "numba", "pyclipper", "trimesh")
 
 
 def run_header(
-    job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], planned_time_s: float, stock_notes: Sequence[str] = ()
+    job: Job, workpiece: TriSlices, tools: Sequence[ToolRecord], plan: Plan, stock_notes: Sequence[str] = ()
 ) -> RunHeader:
     """Describe a run: stock, tools, settings with their defaults, versions, and the files it was made from.
 
     Args:
+        plan: time and extent of the program.
         stock_notes: what was assumed or mended in the file of the stock.
     """
     parameters = dict(_flat(job.model_dump(mode="json", exclude={"text", "path"}, by_alias=True)))
@@ -40,7 +42,8 @@ def run_header(
         stock_bounds_mm=frozen([workpiece.low_mm, workpiece.high_mm], "stock_bounds_mm", (2, 3)),
         slice_pitch_mm=(float(x), float(y), float(z)),
         tools=tuple(tools),
-        planned_time_s=planned_time_s,
+        planned_time_s=plan.time_s,
+        work_bounds_mm=None if plan.work_mm is None else frozen(plan.work_mm, "work_bounds_mm", (2, 3)),
         parameters=parameters,
         attachments=tuple(_attachments(job)),
         job=job_key(job.path) or job_key(Path(job.program.file)),

@@ -6,6 +6,7 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,19 @@ from twin.workpiece.stock import SliceSet
 HOME_CLEARANCE_MM = 100.0
 #: Motions that are longer than this are taken for a mistake.
 _LONGEST_S, _FARTHEST_MM = 1e9, 1e7
+
+
+class Plan(NamedTuple):
+    """A program that has been read to its end.
+
+    Attributes:
+        time_s: machine time of motions and tool changes.
+        work_mm: shape (2, 3), lower and upper corner of the box of the tool tip in feed motions that end below the top
+            of the stock; None without any.
+    """
+
+    time_s: float
+    work_mm: FloatArray | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -71,19 +85,25 @@ class ProgramMoves:
             axis_rapid_mm_min=self.axis_rapid_mm_min,
         )
 
-    def checked_time_s(self, tool_change_s: float) -> float:
-        """Machine time of the whole program, motions and tool changes; all of it is read and its tools checked.
+    def checked(self, tool_change_s: float, top_mm: float) -> Plan:
+        """Machine time and extent of the whole program; all of it is read and its tools checked.
 
         Args:
             tool_change_s: time of one tool change.
+            top_mm: top of the stock.
 
         Raises:
             ReplayError: a tool that is not in the job, a feed motion without a tool.
             TwinError, GcodeError: as the class.
         """
-        return math.fsum(self._checked_durations(tool_change_s))
+        low, high = np.full(3, math.inf), np.full(3, -math.inf)
+        time_s = math.fsum(self._checked_durations(tool_change_s, top_mm, low, high))
+        return Plan(time_s, np.array([low, high]) if np.all(low <= high) else None)
 
-    def _checked_durations(self, tool_change_s: float) -> Iterator[float]:
+    def _checked_durations(
+        self, tool_change_s: float, top_mm: float, low: FloatArray, high: FloatArray
+    ) -> Iterator[float]:
+        """Durations of motions and tool changes; ``low`` and ``high`` come to hold the ends of feed motions."""
         tools: Collection[int] = self.tool_length_mm.keys()
         known = ", ".join(str(n) for n in sorted(tools))
         for item in self:
@@ -102,6 +122,10 @@ class ProgramMoves:
                         f"{self.file}:{item.nc_line}: feed motion without a tool in the spindle; "
                         "expected a tool change (T.. M6) before it, program.tool in the job, or --tool N"
                     )
+                if not item.rapid and item.end_mm[2] < top_mm:
+                    for end_mm in (item.start_mm, item.end_mm):
+                        np.minimum(low, end_mm, out=low)
+                        np.maximum(high, end_mm, out=high)
                 yield item.duration_s
 
 

@@ -89,12 +89,12 @@ def prepare(
     origin_mm = np.array(job.machine.offsets[job.stock.wcs])
     moves = program_moves(job.program, job.machine, job.tools, origin_mm, slices)
     report(f"reading {job.program.file.name}")
-    planned_time_s = moves.checked_time_s(job.machine.tool_change_s)
+    plan = moves.checked(job.machine.tool_change_s, float(slices.high_mm[2]))
     report("storing the slices")
     workpiece = PolygonSlices(slices) if fineness.store == "reference" else CellSlices(slices)
     return Setup(
         program=str(job.program.file),
-        header=run_header(job, workpiece, [t.record for t in tools.values()], planned_time_s, slices.notes),
+        header=run_header(job, workpiece, [t.record for t in tools.values()], plan, slices.notes),
         moves=moves,
         tools=tools,
         material=Material(workpiece, tolerance, threads),
@@ -105,7 +105,7 @@ def prepare(
             tool_change_s=job.machine.tool_change_s,
             program=str(job.program.file),
         ),
-        preview=Preview(workpiece, tools, planned_time_s, fineness.preview_pitch_mm) if preview else None,
+        preview=Preview(workpiece, tools, plan.time_s, fineness.preview_pitch_mm) if preview else None,
         starts=StartCheck(str(job.program.file)),
         step_mm=fineness.step_mm,
         air_chord_mm=0.5 * fineness.slice_pitch_mm,

@@ -5,16 +5,29 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from twin.errors import ArchiveError
 from twin.record import Record
+
+if TYPE_CHECKING:
+    from twin.sinks.mcap_sink import McapSink
+    from twin.sinks.rerun.sink import RerunSink
+    from twin.sinks.rerun.web import WebServer
 
 Write: TypeAlias = Callable[[Record], None]
 
 
 @contextmanager
-def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool, job: Path | None = None) -> Iterator[Write]:
+def opened(
+    mcap: Path | None,
+    rrd: Path | None,
+    *,
+    view: bool,
+    web: WebServer | None = None,
+    force: bool,
+    job: Path | None = None,
+) -> Iterator[Write]:
     """Open the requested outputs; yields a function that writes a record to all of them.
 
     They are completed at the end. If the block ends by an exception they are discarded, and no file is left except the
@@ -24,6 +37,7 @@ def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool, job:
         mcap: archive to write.
         rrd: rerun recording to write.
         view: show the run in the viewer.
+        web: show it in a browser.
         force: replace files that exist.
         job: job file of the run: outputs that were made from it are replaced without ``force``.
 
@@ -38,10 +52,10 @@ def opened(mcap: Path | None, rrd: Path | None, *, view: bool, force: bool, job:
             from twin.sinks.mcap_sink import McapSink
 
             sinks.append(McapSink(mcap, force=force, job=job))
-        if rrd is not None or view:
+        if rrd is not None or view or web is not None:
             from twin.sinks.rerun.sink import RerunSink
 
-            sinks.append(RerunSink(rrd=rrd, spawn=view, force=force, job=job))
+            sinks.append(RerunSink(rrd=rrd, spawn=view, web=web, force=force, job=job))
 
         def write(record: Record) -> None:
             for sink in sinks:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 import subprocess
 import sysconfig
 import time
@@ -17,6 +16,7 @@ import pytest
 from rerun.chunk import RrdReader
 from rerun.experimental import ViewerClient
 
+from tests.support.ports import free_port
 from tests.support.slot_run import BOX, SlotRun
 from twin.archive.schemas import FORCE, FORCE_TOPIC, MESSAGES
 from twin.errors import ArchiveError
@@ -27,13 +27,15 @@ from twin.sinks.rerun.sink import RerunSink
 
 RUN = SlotRun(step_mm=1.0, per_turn=36)
 RERUN = Path(sysconfig.get_path("scripts")) / "rerun"
+ARCHIVED = (*layout.FORCES, layout.TORQUE)
 VIEWS = {
     "Part, tool and path coloured by resultant force",
     "NC program",
     "Summary",
-    "Cutting force on the tool",
+    "Resultant force: highest and mean of each revolution",
+    "Force on the tool: lowest, highest and mean of each revolution",
     "Force around the cursor, ±40 ms",
-    "Spindle torque",
+    "Spindle torque: highest and mean of each revolution",
 }
 
 
@@ -51,23 +53,23 @@ def test_a_saved_blueprint_loads_and_maps_the_fields_of_the_archive(tmp_path: Pa
     (entry,) = RrdReader(tmp_path / "a.rbl").blueprints()
     assert entry.application_id == layout.APPLICATION_ID
     text = rows(tmp_path / "a.rbl")
-    for series in layout.SERIES:
+    for series in ARCHIVED:
         assert f".{series.archive_field}" in text
-        assert series.name in text
+        assert series.label in text
     assert layout.ARCHIVE_TIME in text
 
 
 def test_the_shipped_blueprint_is_the_present_one(tmp_path: Path) -> None:
     save_blueprint(tmp_path / "a.rbl")
     shipped, made = rows(SHIPPED), rows(tmp_path / "a.rbl")
-    for word in (*VIEWS, *(f".{s.archive_field}" for s in layout.SERIES), *(s.name for s in layout.SERIES)):
+    for word in (*VIEWS, *(f".{s.archive_field}" for s in ARCHIVED), *(s.label for s in ARCHIVED)):
         assert shipped.count(word) == made.count(word) > 0
     assert len(shipped.splitlines()) == len(made.splitlines())
 
 
 def test_the_mapped_fields_are_fields_of_the_archive() -> None:
     fields = {name for name, _, _ in MESSAGES[FORCE]}
-    assert {s.archive_field for s in layout.SERIES} <= fields
+    assert {s.archive_field for s in ARCHIVED} <= fields
     assert f"{FORCE}:message" == layout.ARCHIVE_FORCE_COMPONENT
     assert f"/{layout.ARCHIVE_FORCE}" == FORCE_TOPIC
 
@@ -92,9 +94,7 @@ def test_a_blueprint_that_cannot_be_written_is_said(tmp_path: Path) -> None:
 @contextmanager
 def viewer(*files: Path) -> Iterator[ViewerClient]:
     """A viewer without a window that shows files, or a skip where none can be started."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     if os.name != "posix" or not RERUN.exists():
         pytest.skip("no rerun viewer here")
     command = [str(RERUN), "--headless", "--hide-welcome-screen", "--port", str(port), *map(str, files)]

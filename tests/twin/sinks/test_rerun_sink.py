@@ -60,10 +60,12 @@ def test_the_entity_tree(recording: Recording) -> None:
         "workpiece/x1_y0",
         "workpiece/x2_y0",
         "workpiece/x3_y0",
-        "force/x",
-        "force/y",
-        "force/z",
+        "force/samples",
+        "force/envelope",
+        "force/resultant",
         "torque",
+        layout.COLLISION_MARK,
+        layout.WARNING_MARK,
         layout.BLOCKS,
         layout.COLLISION_LOG,
         layout.SUMMARY,
@@ -78,8 +80,9 @@ def test_the_entity_tree(recording: Recording) -> None:
         layout.RAPID_PATH,
         layout.COLLISIONS,
         "workpiece/x0_y0",
-        "force/x",
+        "force/samples",
         "torque",
+        layout.COLLISION_MARK,
         "nc/block",
     ],
 )
@@ -90,19 +93,59 @@ def test_moving_entities_have_the_three_timelines_and_no_clock(recording: Record
 def test_every_sample_is_there_with_its_value_and_time(recording: Recording, records: list[Record]) -> None:
     samples = [s.samples for s in steps_of(records)]
     force = np.concatenate([s.force_n for s in samples])
-    for axis, series in enumerate(layout.FORCES):
-        np.testing.assert_array_equal(np.ravel(recording.column(series.entity, "Scalars:scalars")), force[:, axis])
     torque = np.concatenate([s.torque_nm for s in samples])
-    np.testing.assert_array_equal(np.ravel(recording.column("torque", "Scalars:scalars")), torque)
+    rows = np.array(recording.column("force/samples", "Scalars:scalars"))
+    np.testing.assert_array_equal(rows[:, :3], force)
+    np.testing.assert_allclose(rows[:, 3], np.linalg.norm(force, axis=1), rtol=1e-12)
+    np.testing.assert_array_equal(rows[:, 4], torque)
     times = np.concatenate(
         [
             t.column(layout.TIME).cast(pa.int64()).to_numpy()
-            for t in recording.tables["force/x"]
+            for t in recording.tables["force/samples"]
             if layout.TIME in t.schema.names
         ]
     )
     expected = np.rint(np.concatenate([s.t_s for s in samples]) * 1e9)
     np.testing.assert_array_equal(np.sort(times), expected)
+
+
+def test_the_envelope_holds_every_sample_of_its_revolution(recording: Recording, records: list[Record]) -> None:
+    samples = [s.samples for s in steps_of(records) if len(s.samples.t_s)]
+    angles, force = (np.concatenate([getattr(s, n) for s in samples]) for n in ("spindle_angle_rad", "force_n"))
+    turns = np.floor(angles / (2.0 * np.pi))
+    rows = np.array(recording.column("force/envelope", "Scalars:scalars")).reshape(-1, 3, 3)
+    highest = np.array(recording.column("force/resultant", "Scalars:scalars"))[:, 0]
+    each = [force[turns == turn] for turn in np.unique(turns)]
+    assert len(rows) == len(each) > 5
+    np.testing.assert_array_equal(rows[:, :, 0], [f.min(axis=0) for f in each])
+    np.testing.assert_array_equal(rows[:, :, 1], [f.max(axis=0) for f in each])
+    assert np.all((rows[:, :, 0] <= rows[:, :, 2]) & (rows[:, :, 2] <= rows[:, :, 1]))
+    np.testing.assert_allclose(highest, [np.linalg.norm(f, axis=1).max() for f in each], rtol=1e-12)
+
+
+def test_a_long_run_keeps_whole_revolutions_all_along(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, records: list[Record]
+) -> None:
+    total = sum(len(s.samples.t_s) for s in steps_of(records))
+    monkeypatch.setattr("twin.sinks.rerun.envelope.MOST_SAMPLES", total // 3)
+    monkeypatch.setattr("twin.sinks.rerun.batches.BATCH_STEPS", 7)
+    write(tmp_path / "a.rrd", records)
+    recording = Recording(tmp_path / "a.rrd")
+    rows = np.array(recording.column("force/samples", "Scalars:scalars"))
+    kept = np.isfinite(rows[:, 0])
+    assert 0.8 * total / 3 <= kept.sum() <= total / 3
+    gaps = np.flatnonzero(~kept)
+    assert len(gaps) > 3
+    assert np.all(np.diff(gaps) > 1)
+    assert gaps[0] < 0.6 * len(rows)
+    assert len(recording.column("force/envelope", "Scalars:scalars")) > len(gaps)
+    assert "some revolutions only" in str(recording.column(layout.SUMMARY, "TextDocument:text"))
+
+
+def test_a_collision_is_marked_on_the_time_axis(recording: Recording, records: list[Record]) -> None:
+    (collision,) = [r for r in records if isinstance(r, Collision)]
+    (table,) = [t for t in recording.tables[layout.COLLISION_MARK] if "Scalars:scalars" in t.schema.names]
+    assert table.column(layout.TIME).cast(pa.int64()).to_pylist() == [round(collision.t_s * 1e9)]
 
 
 def test_the_tool_stands_at_the_start_of_each_step_and_at_last_at_its_end(
@@ -170,7 +213,7 @@ def test_a_long_motion_moves_the_drawn_tool_on_the_way(tmp_path: Path) -> None:
 
 def test_an_empty_run_is_a_recording(tmp_path: Path) -> None:
     write(tmp_path / "a.rrd", [RUN.header()])
-    assert "force/x" in Recording(tmp_path / "a.rrd").tables
+    assert "force/samples" in Recording(tmp_path / "a.rrd").tables
 
 
 def test_a_run_ended_early_is_kept(tmp_path: Path, records: list[Record]) -> None:
@@ -180,7 +223,7 @@ def test_a_run_ended_early_is_kept(tmp_path: Path, records: list[Record]) -> Non
             sink.write(record)
         raise KeyboardInterrupt
     samples = sum(len(s.samples.t_s) for s in steps_of(begin))
-    assert len(Recording(tmp_path / "a.rrd").column("force/x", "Scalars:scalars")) == samples
+    assert len(Recording(tmp_path / "a.rrd").column("force/samples", "Scalars:scalars")) == samples
 
 
 def test_without_a_header_no_file_is_left(tmp_path: Path) -> None:
@@ -222,7 +265,7 @@ def test_an_existing_file_is_replaced_by_force(tmp_path: Path) -> None:
     path.write_bytes(b"mine")
     with RerunSink(rrd=path, force=True) as sink:
         sink.write(RUN.header())
-    assert "force/x" in Recording(path).tables
+    assert "force/samples" in Recording(path).tables
 
 
 def test_a_run_begins_with_its_header(tmp_path: Path) -> None:
@@ -274,7 +317,7 @@ def test_where_pipes_have_no_names_the_file_is_the_same(
     monkeypatch.setattr(rerun_file, "_OPEN_FILES", tmp_path / "missing")
     write(tmp_path / "a.rrd", records)
     samples = sum(len(s.samples.t_s) for s in steps_of(records))
-    assert len(Recording(tmp_path / "a.rrd").column("force/x", "Scalars:scalars")) == samples
+    assert len(Recording(tmp_path / "a.rrd").column("force/samples", "Scalars:scalars")) == samples
 
 
 def test_the_header_names_the_recording(tmp_path: Path) -> None:

@@ -9,13 +9,17 @@ from typing import Any
 
 import pytest
 
+from tests.support.ports import free_port
 from twin.cli import run
 from twin.errors import TwinError
 from twin.sinks.rerun import viewer
 from twin.sinks.rerun.sink import RerunSink
 
 ARCHIVE = Path(__file__).parents[2] / "golden" / "archive" / "slot_0_1_0.mcap"
-ADVICE = "write a recording with --rrd FILE, and open it with 'rerun FILE' on a computer with a screen"
+ADVICE = (
+    "show an archive in a browser with 'twin view RUN.mcap --web', or write a recording with --rrd FILE, and open it "
+    "with 'rerun FILE' on a computer with a screen"
+)
 
 
 @pytest.fixture(autouse=True)
@@ -25,12 +29,6 @@ def no_viewer(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(viewer, "_PORT", free_port())
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"):
         monkeypatch.delenv(name, raising=False)
-
-
-def free_port() -> int:
-    with socket.socket() as made:
-        made.bind(("127.0.0.1", 0))
-        return int(made.getsockname()[1])
 
 
 @pytest.mark.parametrize(

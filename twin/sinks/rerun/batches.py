@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import rerun as rr
@@ -22,9 +23,15 @@ BATCH_SAMPLES = 1 << 16
 #: Time between positions of the drawn tool in a long step, and the largest number of them.
 _POSE_S = 0.04
 _POSES = 250
+#: Most steps of a run that the tool is drawn at.
+_MOST_POSES = 200_000
 #: Rows of the path in a run: with more the viewer is slow, with fewer the path lags behind the tool.
 _PATH_ROWS = 1500
 _REVOLUTION = 2.0 * np.pi
+#: Steps that turn aside by less than this are drawn as one line.
+_STRAIGHT_MM = 1e-4
+
+Point: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,31 +76,36 @@ class StepBatch:
         return steps
 
 
-def force_columns(steps: Sequence[Step]) -> tuple[Moments, dict[str, FloatArray]]:
-    """All samples of some steps: their times, and the values of each curve by its entity."""
-    samples = [s.samples for s in steps]
-    counts = [len(s.t_s) for s in samples]
-    force = np.concatenate([s.force_n for s in samples])
-    moments = Moments(
-        np.concatenate([s.t_s for s in samples]),
-        np.repeat(np.array([s.index for s in steps], np.int64), counts),
-        np.repeat(np.array([s.nc_line for s in steps], np.int64), counts),
-    )
-    columns = {series.entity: force[:, axis] for axis, series in enumerate(layout.FORCES)}
-    return moments, columns | {layout.TORQUE.entity: np.concatenate([s.torque_nm for s in samples])}
+class PoseBatch:
+    """Positions of the tool tip: at the start of steps, and within long ones.
+
+    Args:
+        planned_time_s: duration of the whole run; of very short steps, some are passed over.
+    """
+
+    def __init__(self, planned_time_s: float) -> None:
+        self._least_s = planned_time_s / _MOST_POSES
+        self._last_s = -math.inf
+
+    def columns(self, steps: Sequence[Step]) -> tuple[Moments, FloatArray] | None:
+        """Times, and positions of shape (n, 3)."""
+        rows: list[tuple[float, int, int]] = []
+        tips: list[FloatArray] = []
+        for step in steps:
+            if step.t_s - self._last_s < self._least_s and step.duration_s < self._least_s:
+                continue
+            self._last_s = step.t_s
+            tips.append(_poses(step, rows))
+        return (Moments.of(rows), np.concatenate(tips)) if rows else None
 
 
-def pose_columns(steps: Sequence[Step]) -> tuple[Moments, FloatArray]:
-    """Tool tip at the start of every step and within long ones: times, and positions of shape (n, 3)."""
-    rows: list[tuple[float, int, int]] = []
-    tips: list[FloatArray] = []
-    for step in steps:
-        count = int(np.clip(step.duration_s / _POSE_S, 1, _POSES))
-        part = np.arange(count) / count
-        rows += [(step.t_s + p * step.duration_s, step.index, step.nc_line) for p in part.tolist()]
-        start, end = np.array(step.start_mm), np.array(step.end_mm)
-        tips.append(start + part[:, None] * (end - start))
-    return Moments.of(rows), np.concatenate(tips)
+def _poses(step: Step, rows: list[tuple[float, int, int]]) -> FloatArray:
+    """Positions within one step, shape (n, 3); their times are added to ``rows``."""
+    count = int(np.clip(step.duration_s / _POSE_S, 1, _POSES))
+    part = np.arange(count) / count
+    rows += [(step.t_s + p * step.duration_s, step.index, step.nc_line) for p in part.tolist()]
+    start, end = np.array(step.start_mm), np.array(step.end_mm)
+    return np.asarray(start + part[:, None] * (end - start))
 
 
 class RevolutionPeak:
@@ -122,7 +134,7 @@ class PathRow:
     """Strips that appear together: points and class of each."""
 
     moment: tuple[float, int, int]
-    strips: list[list[tuple[float, float, float]]]
+    strips: list[list[Point]]
     classes: list[int]
 
 
@@ -167,7 +179,11 @@ class PathBatch:
             self._open[entity] = row = PathRow(moment, [], [])
         row.moment = moment
         if row.strips and row.classes[-1] == number and row.strips[-1][-1] == step.start_mm:
-            row.strips[-1].append(step.end_mm)
+            strip = row.strips[-1]
+            if len(strip) > 1 and _goes_on(strip[-2], step.start_mm, step.end_mm):
+                strip[-1] = step.end_mm
+            else:
+                strip.append(step.end_mm)
         else:
             row.strips.append([step.start_mm, step.end_mm])
             row.classes.append(number)
@@ -177,6 +193,14 @@ class PathBatch:
             if row is not None:
                 self._rows[entity].append(row)
                 self._open[entity] = None
+
+
+def _goes_on(before: Point, at: Point, end: Point) -> bool:
+    """Whether a line from ``before`` to ``at`` goes straight on to ``end``."""
+    ax, ay, az = at[0] - before[0], at[1] - before[1], at[2] - before[2]
+    bx, by, bz = end[0] - at[0], end[1] - at[1], end[2] - at[2]
+    aside = (ay * bz - az * by) ** 2 + (az * bx - ax * bz) ** 2 + (ax * by - ay * bx) ** 2
+    return ax * bx + ay * by + az * bz > 0.0 and aside <= _STRAIGHT_MM**2 * (ax * ax + ay * ay + az * az)
 
 
 def path_columns(rows: Sequence[PathRow]) -> tuple[Moments, Any]:

@@ -30,24 +30,25 @@ _UP_TO_CURSOR = [
 ]
 
 
-def blueprint(stock_bounds_mm: FloatArray | None = None, *, timeline: str = layout.TIME) -> rrb.Blueprint:
+def blueprint(view_mm: FloatArray | None = None, *, timeline: str = layout.TIME) -> rrb.Blueprint:
     """The layout of the timeline.
 
     Args:
-        stock_bounds_mm: shape (2, 3), the box that the camera looks at; None leaves the camera to the viewer.
+        view_mm: shape (2, 3), the box that the camera looks at; None leaves the camera to the viewer.
         timeline: machine time: `layout.TIME` in a recording, `layout.ARCHIVE_TIME` in an archive.
     """
     return rrb.Blueprint(
         rrb.Horizontal(
             rrb.Vertical(
-                _part(stock_bounds_mm),
-                _curves("Cutting force on the tool", layout.FORCES),
-                _curves("Spindle torque", (layout.TORQUE,)),
-                row_shares=[9, 7, 3],
+                _part(view_mm),
+                _curves("Resultant force: highest and mean of each revolution", layout.RESULTANT_CURVES, marks=True),
+                _curves("Force on the tool: lowest, highest and mean of each revolution", layout.ENVELOPE),
+                _curves("Spindle torque: highest and mean of each revolution", layout.TORQUE_CURVES),
+                row_shares=[9, 4, 6, 3],
             ),
             rrb.Vertical(
                 rrb.Tabs(_blocks(timeline), _summary()),
-                _curves("Force around the cursor, ±40 ms", layout.FORCES, close=True),
+                _curves("Force around the cursor, ±40 ms", layout.SAMPLES, close=True),
                 row_shares=[11, 8],
             ),
             column_shares=[7, 3],
@@ -72,7 +73,7 @@ def save_blueprint(path: Path) -> None:
         raise ArchiveError(f"{path}: cannot be written: {error}") from error
 
 
-def _part(stock_bounds_mm: FloatArray | None) -> rrb.Spatial3DView:
+def _part(view_mm: FloatArray | None) -> rrb.Spatial3DView:
     """Machined part, tool and path up to the cursor."""
     history = [layout.CUT_PATH, layout.RAPID_PATH, layout.COLLISIONS]
     return rrb.Spatial3DView(
@@ -80,22 +81,22 @@ def _part(stock_bounds_mm: FloatArray | None) -> rrb.Spatial3DView:
         contents=["machine/**", "workpiece/**", "stock/**"],
         name="Part, tool and path coloured by resultant force",
         background=rrb.Background(color=(26, 29, 34), kind=rrb.BackgroundKind.SolidColor),
-        line_grid=_grid(stock_bounds_mm),
-        eye_controls=None if stock_bounds_mm is None else _eye(stock_bounds_mm),
+        line_grid=_grid(view_mm),
+        eye_controls=None if view_mm is None else _eye(view_mm),
         overrides={entity: rrb.VisibleTimeRanges(_UP_TO_CURSOR) for entity in history},
     )
 
 
-def _grid(stock_bounds_mm: FloatArray | None) -> rrb.LineGrid3D:
+def _grid(view_mm: FloatArray | None) -> rrb.LineGrid3D:
     """A grid in the plane of the stock's lower face."""
-    floor = 0.0 if stock_bounds_mm is None else float(stock_bounds_mm[0, 2])
+    floor = 0.0 if view_mm is None else float(view_mm[0, 2])
     plane = rr.encodings.Plane3D((0.0, 0.0, 1.0), floor)
     return rrb.LineGrid3D(visible=True, plane=plane, spacing=10.0, stroke_width=0.75, color=(120, 128, 140, 40))
 
 
-def _eye(stock_bounds_mm: FloatArray) -> rrb.EyeControls3D:
+def _eye(view_mm: FloatArray) -> rrb.EyeControls3D:
     """From the front, left and above, as one looks into a machine."""
-    low, high = stock_bounds_mm
+    low, high = view_mm
     reach = 0.5 * float(((high - low) ** 2).sum()) ** 0.5
     target = 0.5 * (low + high) + np.array((0.0, 0.0, 0.1 * reach))
     return rrb.EyeControls3D(position=target + reach * np.array(layout.EYE), look_target=target, eye_up=(0, 0, 1))
@@ -118,8 +119,8 @@ def _summary() -> rrb.TextDocumentView:
     return rrb.TextDocumentView(origin=layout.SUMMARY, name="Summary")
 
 
-def _curves(name: str, series: tuple[layout.Series, ...], *, close: bool = False) -> rrb.TimeSeriesView:
-    """Curves over the whole run, or around the cursor."""
+def _curves(name: str, curves: layout.Curves, *, close: bool = False, marks: bool = False) -> rrb.TimeSeriesView:
+    """Curves over the whole run, or around the cursor; an archive that the viewer reads itself has the samples only."""
     around = [
         rr.VisibleTimeRange(
             timeline,
@@ -128,20 +129,21 @@ def _curves(name: str, series: tuple[layout.Series, ...], *, close: bool = False
         )
         for timeline in (layout.TIME, layout.ARCHIVE_TIME)
     ]
+    archived = layout.ARCHIVED[curves.entity]
     return rrb.TimeSeriesView(
         origin="/",
-        contents=[*(s.entity for s in series), layout.ARCHIVE_FORCE],
+        contents=[curves.entity, *((layout.ARCHIVE_FORCE,) if archived else ()), *(("marks/**",) if marks else ())],
         name=name,
         plot_legend=rrb.PlotLegend(visible=not close, corner=rrb.Corner2D.LeftTop),
         time_ranges=around if close else None,
         axis_x=None if close else rrb.TimeAxis(view_range=_WHOLE_RUN),
-        overrides={layout.ARCHIVE_FORCE: [_archive_curve(s) for s in series]},
+        overrides={layout.ARCHIVE_FORCE: [_archive_curve(s) for s in archived]} if archived else None,
     )
 
 
 def _archive_curve(series: layout.Series) -> rrb.Visualizer:
     """A field of the archive's force messages as a curve."""
-    lines = rr.SeriesLines(colors=series.color, names=series.name, aggregation_policy="MinMax", widths=1.0)
+    lines = rr.SeriesLines(colors=series.color, names=series.label, aggregation_policy="MinMax", widths=1.0)
     return lines.visualizer(
         mappings=[
             VisualizerComponentMapping(

@@ -12,6 +12,7 @@ from twin.archive.comparison_file import ComparedForces
 from twin.sinks.rerun import layout
 from twin.sinks.rerun.file import RecordingFile
 from twin.sinks.rerun.viewer import viewer_sink
+from twin.sinks.rerun.web import WebServer
 
 _APPLICATION_ID = "twin-comparison"
 _MEASURED: layout.Rgb = (206, 212, 220)
@@ -20,13 +21,16 @@ _CLOSE_S = 0.02
 _CLOSE_NAME = "Around the cursor, ±20 ms"
 
 
-def show_comparison(forces: ComparedForces, *, rrd: Path | None = None, spawn: bool = False) -> None:
+def show_comparison(
+    forces: ComparedForces, *, rrd: Path | None = None, spawn: bool = False, web: WebServer | None = None
+) -> None:
     """Draw measured force, simulated force and error of each axis over machine time; one view per axis.
 
     Args:
         forces: both forces at the log's samples.
         rrd: recording to write; an existing one is replaced.
         spawn: start a viewer.
+        web: server for a browser.
 
     Raises:
         ArchiveError: the recording cannot be written.
@@ -34,6 +38,7 @@ def show_comparison(forces: ComparedForces, *, rrd: Path | None = None, spawn: b
     """
     recording = rr.RecordingStream(_APPLICATION_ID)
     viewers = [viewer_sink()] if spawn else []
+    viewers += [web.sink()] if web is not None else []
     file = RecordingFile(rrd, force=True) if rrd is not None else None
     if file is not None:
         file.connect(recording, *viewers)

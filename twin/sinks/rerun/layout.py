@@ -34,32 +34,84 @@ class Series:
     """One curve.
 
     Attributes:
-        entity: where it is logged.
-        name: what the legend says, unit included.
-        archive_field: name of the field of a ``twin.CuttingForce`` message.
+        name: what the legend says.
+        unit: of its values.
+        archive_field: name of the field of a ``twin.CuttingForce`` message, empty without one.
     """
 
-    entity: str
     name: str
+    unit: str
     color: Rgb
-    archive_field: str
+    archive_field: str = ""
+
+    @property
+    def label(self) -> str:
+        """Name and unit."""
+        return f"{self.name} [{self.unit}]"
+
+    def of(self, which: str, color: Rgb | None = None) -> Series:
+        """The lowest, highest or mean values of this one."""
+        return Series(f"{self.name} {which}", self.unit, self.color if color is None else color)
 
 
 #: Red, green and blue as the axes of the 3D view, in hues that colour-blind people can distinguish.
 FORCES = (
-    Series("force/x", "Fx [N]", (240, 96, 56), "fx_n"),
-    Series("force/y", "Fy [N]", (38, 186, 138), "fy_n"),
-    Series("force/z", "Fz [N]", (92, 172, 250), "fz_n"),
+    Series("Fx", "N", (240, 96, 56), "fx_n"),
+    Series("Fy", "N", (38, 186, 138), "fy_n"),
+    Series("Fz", "N", (92, 172, 250), "fz_n"),
 )
-TORQUE = Series("torque", "torque [N·m]", (236, 200, 84), "torque_nm")
-SERIES = (*FORCES, TORQUE)
+RESULTANT = Series("resultant", "N", (176, 128, 244))
+TORQUE = Series("torque", "N·m", (224, 176, 46), "torque_nm")
+_DARK: tuple[Rgb, ...] = ((178, 72, 46), (28, 132, 100), (66, 118, 178))
+
+
+@dataclass(frozen=True, slots=True)
+class Curves:
+    """Curves of one entity, one value of each in a row.
+
+    Attributes:
+        entity: where they are logged.
+        series: the curves.
+        hidden: how many of the last ones a viewer shows on request only.
+    """
+
+    entity: str
+    series: tuple[Series, ...]
+    hidden: int = 0
+
+
+#: Every sample: force components and their resultant; the torque is shown on request.
+SAMPLES = Curves("force/samples", (*FORCES, RESULTANT, TORQUE), hidden=1)
+#: Of each spindle revolution: lowest and highest, of one name, and mean.
+ENVELOPE = Curves(
+    "force/envelope",
+    tuple(
+        curve
+        for force, dark in zip(FORCES, _DARK, strict=True)
+        for curve in (force.of("range"), force.of("range"), force.of("mean", dark))
+    ),
+)
+RESULTANT_CURVES = Curves("force/resultant", (RESULTANT.of("highest"), RESULTANT.of("mean", (122, 90, 172))))
+TORQUE_CURVES = Curves("torque", (TORQUE.of("highest"), TORQUE.of("mean", (158, 124, 36))))
+CURVES = (SAMPLES, ENVELOPE, RESULTANT_CURVES, TORQUE_CURVES)
+
+#: Curves of an archive that the viewer reads itself, in the view of each of these.
+ARCHIVED: dict[str, tuple[Series, ...]] = {
+    SAMPLES.entity: FORCES,
+    ENVELOPE.entity: FORCES,
+    RESULTANT_CURVES.entity: (),
+    TORQUE_CURVES.entity: (TORQUE,),
+}
+
+#: Marks on the time axis of the resultant.
+COLLISION_MARK, WARNING_MARK = "marks/collision", "marks/warning"
 
 #: Topics of the archive that have the same data (docs/archive-format.md).
 ARCHIVE_FORCE = "force"
 ARCHIVE_FORCE_COMPONENT = "twin.CuttingForce:message"
 
-#: Direction from the stock to the eye, in half diagonals of the stock.
-EYE = (-0.95, -1.45, 1.1)
+#: Direction from what the camera looks at to the eye, in half diagonals of its box.
+EYE = (-0.95, -1.45, 1.15)
 
 PART_COLOR: Rgb = (168, 178, 192)
 TOOL_COLOR = (226, 188, 106, 150)
@@ -68,14 +120,16 @@ RAPID_COLOR: Rgb = (130, 130, 136)
 TEXT_COLOR: Rgb = (220, 224, 230)
 AIR_COLOR: Rgb = (176, 176, 182)
 COLLISION_COLOR: Rgb = (255, 92, 112)
+WARNING_COLOR: Rgb = (255, 170, 60)
 
-#: Level and colour of a line of the log by kind of event; the viewer filters by level.
-EVENT_STYLE: dict[str, tuple[str, Rgb]] = {
-    "block": ("INFO", (214, 218, 224)),
-    "tool": ("INFO", (236, 200, 84)),
-    "spindle": ("DEBUG", (140, 190, 250)),
-    "coolant": ("DEBUG", (140, 190, 250)),
-    "stop": ("INFO", (236, 200, 84)),
-    "dwell": ("DEBUG", (140, 190, 250)),
-    "notice": ("WARN", (255, 170, 60)),
+#: Level and colour of a line of the log by kind of event; the viewer filters by level. Colours are legible on dark and
+#: light backgrounds, None is that of the viewer's text.
+EVENT_STYLE: dict[str, tuple[str, Rgb | None]] = {
+    "block": ("INFO", None),
+    "tool": ("INFO", (214, 150, 24)),
+    "spindle": ("DEBUG", (84, 148, 232)),
+    "coolant": ("DEBUG", (84, 148, 232)),
+    "stop": ("INFO", (214, 150, 24)),
+    "dwell": ("DEBUG", (84, 148, 232)),
+    "notice": ("WARN", WARNING_COLOR),
 }

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
+from twin.record import RunHeader
 from twin.sinks.rerun.layout import AIR_COLOR, Rgb
 
 #: Sides of the tool's mesh.
@@ -25,6 +26,8 @@ _MAP: NDArray[np.float64] = np.array(
     [(70, 96, 222), (40, 176, 236), (44, 226, 160), (164, 240, 68), (240, 208, 58), (252, 128, 36), (222, 40, 30)],
     np.float64,
 )
+#: Half side of the view in plan, at least, as a part of the stock's diagonal.
+_LEAST_VIEW = 0.15
 _NICE = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
@@ -52,6 +55,23 @@ def tool_mesh(profile_mm: FloatArray) -> Mesh:
     vertices = np.stack([np.outer(ends[:, 0], cos), np.outer(ends[:, 0], sin), _across(ends[:, 1])], axis=-1)
     turned = np.stack([np.outer(normals[:, 0], cos), np.outer(normals[:, 0], sin), _across(normals[:, 1])], axis=-1)
     return Mesh(_rows(vertices), _rows(turned), _strip_triangles(len(points) - 1))
+
+
+def view_box(header: RunHeader) -> FloatArray:
+    """The part of the stock that is cut, shape (2, 3), up to the stock's upper face.
+
+    Without feed motions, and in runs of earlier versions, it is the whole stock; it is never much smaller.
+    """
+    low, high = header.stock_bounds_mm
+    if header.work_bounds_mm is None:
+        return header.stock_bounds_mm
+    reach = max((float(t.profile_mm[:2, 0].max()) for t in header.tools), default=0.0)
+    inside = np.clip(header.work_bounds_mm + np.array([[-reach], [reach]]), low, high)
+    centre, half = inside.mean(axis=0), 0.5 * np.ptp(inside, axis=0)
+    half = np.maximum(half, _LEAST_VIEW * float(np.linalg.norm(high[:2] - low[:2])))
+    box = np.clip([centre - half, centre + half], low, high)
+    box[:, 2] = min(inside[0, 2], high[2] - _LEAST_VIEW * float(high[2] - low[2])), high[2]
+    return np.asarray(box)
 
 
 def box_edges(bounds_mm: FloatArray) -> list[FloatArray]:

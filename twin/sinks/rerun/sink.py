@@ -10,16 +10,19 @@ from uuid import uuid4
 import numpy as np
 import rerun as rr
 
+from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, ToolRecord, WorkpiecePatch
 from twin.sinks.rerun import layout
-from twin.sinks.rerun.batches import Moments, PathBatch, StepBatch, force_columns, path_columns, pose_columns
+from twin.sinks.rerun.batches import Moments, PathBatch, PoseBatch, StepBatch, path_columns
 from twin.sinks.rerun.blueprint import blueprint
+from twin.sinks.rerun.envelope import Envelope, EnvelopeRows, SampleColumns, Selection
 from twin.sinks.rerun.file import RecordingFile
 from twin.sinks.rerun.scene import draw_scale, draw_scene
-from twin.sinks.rerun.shapes import scale_end_n, tool_mesh
+from twin.sinks.rerun.shapes import scale_end_n, tool_mesh, view_box
 from twin.sinks.rerun.summary import summary_text
 from twin.sinks.rerun.viewer import require_viewer, viewer_sink
+from twin.sinks.rerun.web import WebServer
 
 
 class RerunSink:
@@ -28,6 +31,7 @@ class RerunSink:
     Args:
         rrd: the recording's file; missing folders above it are created. It is named ``*.partial.rrd`` until `close`.
         spawn: start a viewer and show the run while it is computed.
+        web: server for a browser that shows it.
         force: replace an existing file instead of refusing.
         job: job file of the run: a recording that was made from it is replaced without ``force``.
 
@@ -38,24 +42,31 @@ class RerunSink:
     """
 
     def __init__(
-        self, *, rrd: Path | None = None, spawn: bool = False, force: bool = False, job: Path | None = None
+        self,
+        *,
+        rrd: Path | None = None,
+        spawn: bool = False,
+        web: WebServer | None = None,
+        force: bool = False,
+        job: Path | None = None,
     ) -> None:
-        if rrd is None and not spawn:
-            raise ValueError("rrd or spawn must be given")
+        if rrd is None and not spawn and web is None:
+            raise ValueError("rrd, spawn or web must be given")
         if spawn:
             require_viewer()
         self._file = RecordingFile(Path(rrd), force=force, job=job) if rrd is not None else None
-        self._spawn = spawn
+        self._spawn, self._web = spawn, web
         self._recording: rr.RecordingStream | None = None
         self._closed = False
         self._batch = StepBatch()
-        self._path = PathBatch(0.0)
+        self._path, self._poses = PathBatch(0.0), PoseBatch(0.0)
+        self._envelope, self._selection = Envelope(0.0), Selection(0.0)
         self._tools: dict[int, ToolRecord] = {}
         self._tool: int | None = None
         self._scale_n = 0.0
         self._now = (0.0, 0, 0)
         self._tip = (0.0, 0.0, 0.0)
-        self._stock_mm = np.zeros((2, 3))
+        self._view_mm = np.zeros((2, 3))
 
     def write(self, record: Record) -> None:
         """Take one record.
@@ -80,7 +91,8 @@ class RerunSink:
             case WorkpiecePatch():
                 self._patch(record)
             case RunSummary():
-                text = summary_text(record)
+                self._send_batch()
+                text = summary_text(record, all_samples=self._selection.complete)
                 self._log(layout.SUMMARY, None, rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         if self._file is not None:
             self._file.check()
@@ -96,6 +108,7 @@ class RerunSink:
         self._closed = True
         if self._recording is not None:
             self._send_batch()
+            self._send_envelope(self._envelope.rest())
             if self._tool is not None:
                 self._log(layout.TOOL, self._now, rr.Transform3D.from_fields(translation=self._tip))
             self._recording.disconnect()
@@ -117,18 +130,21 @@ class RerunSink:
             raise ArchiveError("a run has one RunHeader, got a second one")
         recording = rr.RecordingStream(layout.APPLICATION_ID, recording_id=f"{header.job or 'run'}-{uuid4().hex}")
         viewers = [viewer_sink()] if self._spawn else []
+        viewers += [self._web.sink()] if self._web is not None else []
         if self._file is not None:
             self._file.connect(recording, *viewers)
         else:
             recording.set_sinks(*viewers)
-        recording.send_blueprint(blueprint(header.stock_bounds_mm))
+        self._view_mm = view_box(header)
+        recording.send_blueprint(blueprint(self._view_mm))
         recording.set_log_tick_enabled(False)
         recording.set_log_time_enabled(False)
         recording.send_recording_name(header.program)
         self._recording = recording
-        self._stock_mm = header.stock_bounds_mm
         self._tools = {tool.number: tool for tool in header.tools}
-        self._path = PathBatch(header.planned_time_s)
+        planned_s = header.planned_time_s
+        self._path, self._poses = PathBatch(planned_s), PoseBatch(planned_s)
+        self._envelope, self._selection = Envelope(planned_s), Selection(planned_s)
         draw_scene(recording, header)
 
     def _step(self, step: Step) -> None:
@@ -165,12 +181,15 @@ class RerunSink:
         level, color = layout.EVENT_STYLE[event.kind]
         text = f"{event.nc_line:>6}  {event.text}"
         self._log(layout.BLOCKS, self._now, rr.TextLog(text, level=level, color=color))
+        if event.kind == "notice":
+            self._log(layout.WARNING_MARK, self._now, rr.Scalars(0.0))
 
     def _collision(self, collision: Collision) -> None:
         moment = (collision.t_s, self._now[1], collision.nc_line)
         message = collision.message.partition(f":{collision.nc_line}: ")[2] or collision.message
         text = f"{collision.nc_line:>6}  COLLISION {message}"
         self._log(layout.COLLISION_LOG, moment, rr.TextLog(text, level="ERROR", color=layout.COLLISION_COLOR))
+        self._log(layout.COLLISION_MARK, moment, rr.Scalars(0.0))
         self._log(
             layout.COLLISIONS,
             moment,
@@ -203,18 +222,34 @@ class RerunSink:
         steps = self._batch.take()
         if not steps:
             return
-        moments, tips = pose_columns(steps)
-        self._send(layout.TOOL, moments, rr.Transform3D.columns(translation=tips))
-        moments, curves = force_columns(steps)
-        if len(moments.t_s):
-            for entity, values in curves.items():
-                self._send(entity, moments, rr.Scalars.columns(scalars=values))
+        if poses := self._poses.columns(steps):
+            self._send(layout.TOOL, poses[0], rr.Transform3D.columns(translation=poses[1]))
+        samples = SampleColumns.of(steps)
+        self._send_envelope(self._envelope.rows(samples))
+        kept = self._selection.of(samples)
+        if len(kept.t_s):
+            self._send_curves(layout.SAMPLES, Moments(kept.t_s, kept.step, kept.nc_line), kept.loads)
         for entity, rows in self._path.take():
             self._send(entity, *path_columns(rows))
         end_n = scale_end_n(self._path.highest_n)
         if self._recording is not None and end_n != self._scale_n:
             self._scale_n = end_n
-            draw_scale(self._recording, self._stock_mm, end_n)
+            draw_scale(self._recording, self._view_mm, end_n)
+
+    def _send_envelope(self, rows: EnvelopeRows | None) -> None:
+        """Rows of the curves over the whole run."""
+        if rows is None:
+            return
+        moments = Moments(rows.t_s, rows.step, rows.nc_line)
+        low, high, mean = rows.low, rows.high, rows.mean
+        self._send_curves(layout.ENVELOPE, moments, np.stack((low, high, mean), axis=2)[:, :3].reshape(-1, 9))
+        self._send_curves(layout.RESULTANT_CURVES, moments, np.column_stack((high[:, 3], mean[:, 3])))
+        self._send_curves(layout.TORQUE_CURVES, moments, np.column_stack((high[:, 4], mean[:, 4])))
+
+    def _send_curves(self, curves: layout.Curves, moments: Moments, values: FloatArray) -> None:
+        """Rows of several curves; values have shape (n, curves)."""
+        columns = rr.Scalars.columns(scalars=values.ravel()).partition([values.shape[1]] * len(values))
+        self._send(curves.entity, moments, columns)
 
     def _send(self, entity: str, moments: Moments, columns: Any) -> None:
         """Many rows of an entity."""

@@ -22,7 +22,10 @@ _ASK_S = 0.05
 _CONNECT_S = 1.0
 #: TCP port of display 0 of another computer, or of one that ssh forwards.
 _X_PORT = 6000
-_ADVICE = "write a recording with --rrd FILE, and open it with 'rerun FILE' on a computer with a screen"
+_ADVICE = (
+    "show an archive in a browser with 'twin view RUN.mcap --web', or write a recording with --rrd FILE, and open it "
+    "with 'rerun FILE' on a computer with a screen"
+)
 
 
 def require_viewer() -> None:
