@@ -6,6 +6,7 @@ those measured with ten programs. Sizes are within a factor of 1.5; times are th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -27,9 +28,13 @@ _SETUP_S = 1.5
 _SLICE_S, _FORCED_SLICE_S, _SAMPLE_S = 0.2e-3, 0.35e-3, 2.5e-6
 #: Length of the straight pieces that an arc counts as, mm.
 _PIECE_MM = 1.0
-#: Bytes of a force sample, of a step, and of a cell of the surface as drawn: in the archive, and in a recording.
-_ARCHIVE_B = (58.0, 130.0, 70.0)
-_RECORDING_B = (72.0, 400.0, 80.0)
+#: Bytes of a force sample, of a step, and of a byte of the meshes of the part: in the archive, and in a recording.
+_ARCHIVE_B = (48.0, 130.0, 0.4)
+_RECORDING_B = (21.0, 400.0, 0.8)
+#: Bytes of the meshes for each second of feed motion in the stock, and for each cell of the surface at the end.
+_DRAWN_B_S, _CELL_B = 0.4e6, 45.0
+#: Most bytes of the meshes, and most samples in a recording (`twin.simulation.preview`, `twin.sinks.rerun.envelope`).
+MOST_BYTES, MOST_SAMPLES = 120e6, 8_000_000
 #: Cells along the longest side of the stock as drawn.
 _CELLS = 200.0
 #: Memory of the program itself, and of a column of the slices, bytes.
@@ -93,9 +98,11 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
     pieces = np.where(inside.arc, np.maximum(1.0, inside.length_mm / _PIECE_MM), 1.0)
     cut_slices = float((pieces * slices).sum())
 
-    def size(parts: tuple[float, float, float]) -> float:
-        sample, step, cell = parts
-        return float(samples * sample + steps * step + cells * cell)
+    drawn = min(float((inside.time_s * share).sum()) * _DRAWN_B_S, MOST_BYTES) + cells * _CELL_B
+
+    def size(parts: tuple[float, float, float], most_samples: float = math.inf) -> float:
+        sample, step, mesh = parts
+        return float(min(samples, most_samples) * sample + steps * step + drawn * mesh)
 
     return Estimate(
         machine_time_s=float(cuts.feed.time_s.sum()) + cuts.dwell_s + cuts.rapid_mm / _RAPID_MM_MIN * 60.0,
@@ -104,7 +111,7 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
         computing_s=_SETUP_S + cut_slices * (_FORCED_SLICE_S if forces else _SLICE_S) + samples * _SAMPLE_S,
         memory_bytes=_PROGRAM_B + surface / fine.pitch_mm**2 * _COLUMN_B,
         archive_bytes=size(_ARCHIVE_B),
-        recording_bytes=size(_RECORDING_B),
+        recording_bytes=size(_RECORDING_B, MOST_SAMPLES),
     )
 
 
