@@ -283,7 +283,7 @@ def test_a_run_begins_with_its_header(tmp_path: Path) -> None:
 
 
 def test_somewhere_to_write_is_needed() -> None:
-    with pytest.raises(ValueError, match=r"^rrd or spawn must be given$"):
+    with pytest.raises(ValueError, match=r"^rrd, spawn or web must be given$"):
         RerunSink()
 
 
