@@ -123,9 +123,9 @@ COLLISION_COLOR: Rgb = (255, 92, 112)
 WARNING_COLOR: Rgb = (255, 170, 60)
 
 #: Level and colour of a line of the log by kind of event; the viewer filters by level. Colours are legible on dark and
-#: light backgrounds, None is that of the viewer's text.
-EVENT_STYLE: dict[str, tuple[str, Rgb | None]] = {
-    "block": ("INFO", None),
+#: light backgrounds.
+EVENT_STYLE: dict[str, tuple[str, Rgb]] = {
+    "block": ("INFO", (144, 152, 164)),
     "tool": ("INFO", (214, 150, 24)),
     "spindle": ("DEBUG", (84, 148, 232)),
     "coolant": ("DEBUG", (84, 148, 232)),
