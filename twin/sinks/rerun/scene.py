@@ -11,7 +11,7 @@ import rerun as rr
 from twin.arrays import FloatArray
 from twin.record import RunHeader
 from twin.sinks.rerun import layout
-from twin.sinks.rerun.shapes import box_edges, class_colors, class_force_n, force_class, label_step_n
+from twin.sinks.rerun.shapes import CLASSES, box_edges, class_colors, class_force_n, force_class, label_step_n
 
 #: Parts of the scale.
 _BARS = 28
@@ -47,17 +47,19 @@ def draw_scene(recording: rr.RecordingStream, header: RunHeader) -> None:
     log(layout.RAPID_PATH, rapid, static=True, strict=True)
 
 
-def draw_scale(recording: rr.RecordingStream, view_mm: FloatArray, end_n: float) -> None:
+def draw_colors(recording: rr.RecordingStream, end_n: float) -> None:
     """Log the colours of the force classes on a scale from 0 to ``end_n``; the path so far changes with it.
 
-    Path strips have the class of their force, so a new scale needs only a new colour for each class. A bar of the same
-    colours with its numbers is drawn next to what the camera looks at, the box ``view_mm`` of shape (2, 3).
+    Path strips have the class of their force, so a new scale needs only a new colour for each class.
     """
-    colors = class_colors(end_n)
-    classes = [
-        (number, _newtons(class_force_n(number), class_force_n(number)), color) for number, color in enumerate(colors)
-    ]
+    names = [_newtons(force_n, force_n) for force_n in map(class_force_n, range(CLASSES + 1))]
+    classes = [(number, *pair) for number, pair in enumerate(zip(names, class_colors(end_n), strict=True))]
     recording.log(layout.PATH, rr.AnnotationContext(classes), static=True, strict=True)
+
+
+def draw_scale(recording: rr.RecordingStream, view_mm: FloatArray, end_n: float) -> None:
+    """Log a bar of the colours with its numbers next to what the camera looks at, the box ``view_mm``, shape (2, 3)."""
+    colors = class_colors(end_n)
     foot, numbers_foot, height = _bar(view_mm)
     at = np.linspace(0.0, height, _BARS + 1)
     strips = [np.stack([foot + a * _UP, foot + b * _UP]) for a, b in pairwise(at)]

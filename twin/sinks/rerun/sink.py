@@ -18,7 +18,7 @@ from twin.sinks.rerun.batches import Moments, PathBatch, PoseBatch, StepBatch, p
 from twin.sinks.rerun.blueprint import blueprint
 from twin.sinks.rerun.envelope import Envelope, EnvelopeRows, SampleColumns, Selection
 from twin.sinks.rerun.file import RecordingFile
-from twin.sinks.rerun.scene import draw_scale, draw_scene
+from twin.sinks.rerun.scene import draw_colors, draw_scale, draw_scene
 from twin.sinks.rerun.shapes import scale_end_n, tool_mesh, view_box
 from twin.sinks.rerun.summary import summary_text
 from twin.sinks.rerun.viewer import require_viewer, viewer_sink
@@ -234,7 +234,9 @@ class RerunSink:
         end_n = scale_end_n(self._path.highest_n)
         if self._recording is not None and end_n != self._scale_n:
             self._scale_n = end_n
-            draw_scale(self._recording, self._view_mm, end_n)
+            draw_colors(self._recording, end_n)
+            if self._path.highest_n > 0.0:
+                draw_scale(self._recording, self._view_mm, end_n)
 
     def _send_envelope(self, rows: EnvelopeRows | None) -> None:
         """Rows of the curves over the whole run."""
