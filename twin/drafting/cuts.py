@@ -16,7 +16,7 @@ from gcode.settings import NUMBERED_OFFSETS, MachineSettings, ToolOffset
 from twin.arrays import FloatArray
 
 #: Position of the gauge point at the reference point and at the start of the program, above all work, mm.
-_HOME = (0.0, 0.0, 100.0)
+HOME_MM = (0.0, 0.0, 100.0)
 _LEVEL_MM = 1e-4
 _FEEDING = (MotionKind.FEED, MotionKind.ARC, MotionKind.TAP)
 
@@ -115,8 +115,8 @@ def cuts_of(
     tools = None if radii_mm is None else {number: ToolOffset(radius_mm=r) for number, r in radii_mm.items()}
     settings = MachineSettings(
         offsets=dict.fromkeys(NUMBERED_OFFSETS, (0.0, 0.0, 0.0)),
-        home_mm=_HOME,
-        start_mm=_HOME,
+        home_mm=HOME_MM,
+        start_mm=HOME_MM,
         tools=tools,
         tool=tool,
         **more,

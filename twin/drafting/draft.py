@@ -16,6 +16,7 @@ from gcode.flow.interpreter import taken_dialect
 from gcode.language.program import Program, read_program
 from twin.drafting.comments.program_text import ProgramText
 from twin.drafting.comments.stock_posts import stock_comment
+from twin.drafting.comments.tool_words import ToolStatement
 from twin.drafting.cuts import Cuts, cuts_of
 from twin.drafting.doubts import doubts
 from twin.drafting.estimate import Estimate, estimate
@@ -25,7 +26,7 @@ from twin.drafting.notes import Assumption, Notes
 from twin.drafting.settings import DraftSettings
 from twin.drafting.stock import CutShape, StockBox, stock_of
 from twin.drafting.tables import DraftTable, file_text
-from twin.drafting.tools import DraftTool, completed, stated_tools, tool_table
+from twin.drafting.tools import DraftTool, completed, drilling_kind, stated_tools, tool_table
 from twin.errors import ReplayError
 from twin.job import Job, job_from_text
 from twin.materials import find_material
@@ -123,7 +124,7 @@ class _Drafting:
         self.dialect = dialect.name
         self.dialect_reason = "" if notice is None else notice.text.partition(": ")[2]
         self.others = [name for name in DIALECTS if name != self.dialect] if given.dialect == "auto" else []
-        self.wear = False
+        self.wear: dict[int, str] = {}
         self.more: dict[str, Any] = {"m_codes": dict.fromkeys(given.m_codes, "none")}
 
     def draft(self) -> JobDraft:
@@ -213,19 +214,24 @@ class _Drafting:
     def _tools(self, cuts: Cuts) -> list[DraftTool]:
         stated = stated_tools(self.text, cuts.tools, self.notes)
         library = library_tools(self.given.tools, cuts.tools, stated, self.notes) if self.given.tools else {}
-        unit = self.text.unit
-        return [library.get(n) or completed(n, stated.get(n), unit, self.notes) for n in cuts.tools]
+        return [library.get(n) or self._completed(n, cuts, stated.get(n)) for n in cuts.tools]
+
+    def _completed(self, number: int, cuts: Cuts, states: ToolStatement | None) -> DraftTool:
+        feed = cuts.feed.only(cuts.feed.tool == number)
+        return completed(number, states, self.text.unit, self.notes, drilling_kind(feed))
 
     def _compensated(self, tool: int, cuts: Cuts, tools: list[DraftTool]) -> Cuts:
         """The program again with the radius of each tool in its offsets."""
         radii = {number: 0.0 for t in cuts.length_offsets.values() for number in t}
         for one in tools:
-            radii[one.number] = 0.5 * one.diameter_mm
-            radii |= dict.fromkeys(cuts.compensated.get(one.number, ()), 0.5 * one.diameter_mm)
+            radius = 0.0 if one.states.wear else 0.5 * one.diameter_mm
+            radii |= dict.fromkeys([one.number, *cuts.compensated.get(one.number, ())], radius)
+        comment = "the program is posted for the wear only: its comment states WEAR COMP"
+        self.wear = {one.number: comment for one in tools if one.states.wear and one.number in cuts.compensated}
         try:
             compensated = self._run(tool, radii)
         except GcodeError as error:
-            self.wear = True
+            self.wear = dict.fromkeys(cuts.compensated, "assumed: the program is posted for the wear only")
             self.notes.warnings.append(
                 f"cutter compensation with the tools' radii is refused ({error.place}: {error.problem}): they are "
                 "taken as 0, as for a program posted with the path of the tool centre; or a comment states a wrong "
@@ -233,6 +239,8 @@ class _Drafting:
             )
             return cuts
         for number in sorted(cuts.compensated):
+            if number in self.wear:
+                continue
             offsets = ", ".join(f"D{d}" for d in sorted(cuts.compensated[number]))
             reason = "cutter compensation; a post may expect the wear only"
             self.notes.assume(f"T{number}", f"radius {radii.get(number, 0.0):g} mm in {offsets}", reason)
@@ -299,8 +307,8 @@ class _Drafting:
         for tool in tools:
             cutting = own if own is not None and tool.cuts else None
             tables.append(tool_table(tool, max(0.0, top_mm - lowest[tool.number]), cutting, self.notes))
-            if self.wear and tool.number in cuts.compensated:
-                tables[-1].add("offset_radius_mm", 0.0, "assumed: the program is posted for the wear only")
+            if tool.number in self.wear:
+                tables[-1].add("offset_radius_mm", 0.0, self.wear[tool.number])
         return tables + self._offset_rows(cuts, tools)
 
     def _offset_rows(self, cuts: Cuts, tools: list[DraftTool]) -> list[DraftTable]:
@@ -320,7 +328,7 @@ class _Drafting:
             table.add("diameter_mm", rows[number].diameter_mm)
             table.add("teeth", 2)
             table.add("flute_length_mm", max(1.0, rows[number].diameter_mm))
-            if self.wear:
+            if rows[number].number in self.wear:
                 table.add("offset_radius_mm", 0.0)
             tables.append(table)
         return tables

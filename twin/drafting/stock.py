@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.drafting.comments.stock_posts import StockStatement
-from twin.drafting.cuts import Feed
+from twin.drafting.cuts import HOME_MM, Feed
 from twin.drafting.notes import Notes
 from twin.drafting.tables import DraftTable
 from twin.errors import StockError
@@ -136,10 +136,16 @@ def _entries(feed: Feed) -> NDArray[np.bool_]:
 
 
 def _links(feed: Feed) -> NDArray[np.bool_]:
-    """Motions between a retract at feed and the next plunge: some posts write rapids as feed motions."""
+    """Motions between a retract at feed and the next plunge: some posts write rapids as feed motions.
+
+    Level motions above Z0 at a height of such retracts are links too, as the approach to the first plunge is, and so are
+    those at the height of the reference point.
+    """
     up = ~feed.sideways & (feed.end_mm[:, 2] > feed.start_mm[:, 2])
     last = np.maximum.accumulate(np.where(~feed.sideways | feed.first, np.arange(len(up)), 0))
-    links: NDArray[np.bool_] = up[last]
+    height = np.round(feed.low_mm[:, 2], 3)
+    clear = np.isin(height, np.round(feed.end_mm[up, 2], 3)) & (height > 0.0) | (height >= HOME_MM[2])
+    links: NDArray[np.bool_] = up[last] | (feed.level & clear)
     return links
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from twin.drafting.comments.program_text import ProgramText, Unit
 from twin.drafting.comments.tool_posts import ToolComment, tool_comments
 from twin.drafting.comments.tool_words import ToolStatement, rounded
+from twin.drafting.cuts import Feed
 from twin.drafting.notes import Notes
 from twin.drafting.tables import DraftTable
 
@@ -109,8 +110,14 @@ def _merged(number: int, found: Sequence[ToolComment], notes: Notes) -> ToolStat
     return merged
 
 
-def completed(number: int, states: ToolStatement | None, unit: Unit, notes: Notes) -> DraftTool:
-    """A tool with kind and diameter, assumed where nothing states them."""
+def completed(
+    number: int, states: ToolStatement | None, unit: Unit, notes: Notes, drills: str | None = None
+) -> DraftTool:
+    """A tool with kind and diameter, assumed where nothing states them.
+
+    Args:
+        drills: kind of a tool whose motions are those of a drill or a tap, None for another one.
+    """
     known = states is not None and states.diameter_mm is not None
     states = states or ToolStatement(number=number)
     subject = f"T{number}"
@@ -121,7 +128,10 @@ def completed(number: int, states: ToolStatement | None, unit: Unit, notes: Note
             f"T{number}: the program does not state its diameter; drawn with D{size:g} mm, and no forces are computed "
             f"for it; give --tools LIBRARY, or diameter_mm in the job file (twin job)"
         )
-    if states.kind == "flat" and states.corner_radius_mm and states.diameter_mm:
+    if states.kind is None and drills is not None:
+        states = states.over(ToolStatement(kind=drills))
+        notes.assume(subject, f"a {drills}", "it only moves along Z" if drills == "drill" else "it only taps")
+    if states.kind in (None, "flat") and states.corner_radius_mm and states.diameter_mm:
         states = replace(states, kind=rounded(states.corner_radius_mm, states.diameter_mm))
     if states.kind is None:
         states = states.over(ToolStatement(kind="flat"))
@@ -131,6 +141,13 @@ def completed(number: int, states: ToolStatement | None, unit: Unit, notes: Note
             subject, f"a cylinder of D{states.diameter_mm:g} mm without forces", f"a {states.kind} is not simulated"
         )
     return DraftTool(number=number, states=states, known=known)
+
+
+def drilling_kind(feed: Feed) -> str | None:
+    """Kind of a tool by its motions: ``tap`` or ``drill`` where it only moves along Z, None for another one."""
+    if not len(feed.tool) or feed.sideways.any():
+        return None
+    return "tap" if feed.tapping.any() else "drill"
 
 
 def tool_table(tool: DraftTool, depth_mm: float, cutting: Mapping[str, Any] | None, notes: Notes) -> DraftTable:

@@ -23,8 +23,8 @@ _VECTRIC_Z = re.compile(r"Z\s+ORIGIN\s+FOR\s+MATERIAL\s*=\s*(.*)", re.IGNORECASE
 _VECTRIC_XY = re.compile(r"XY\s+ORIGIN\s+FOR\s+MATERIAL\s*=\s*(.*)", re.IGNORECASE)
 _WORDS = re.compile(rf"{_N}{_U}\s*[X*×]\s*{_N}{_U}\s*[X*×]\s*{_N}{_U}", re.IGNORECASE)
 _ABOUT_STOCK = re.compile(r"\b(?:STOCK|BLOCK|BLANK|BILLET|WORK ?PIECE|ROHTEIL|BRUT)\b", re.IGNORECASE)
-_CENTRE = re.compile(r"\bCENT(?:ER|RE|RED|ERED)\b", re.IGNORECASE)
-_TOP = re.compile(r"\b(?:TOP|SURFACE)\b", re.IGNORECASE)
+_CENTRE = re.compile(r"\b(?:CENT(?:ER|RE|RED|ERED|RO)|MITTE)\b", re.IGNORECASE)
+_TOP = re.compile(r"\b(?:TOP|SURFACE|OBEN|OBERKANTE|DESSUS)\b", re.IGNORECASE)
 _BOTTOM = re.compile(r"\b(?:BOTTOM|TABLE|BED)\b(?!\s*(?:LEFT|RIGHT))", re.IGNORECASE)
 _LOWER_LEFT = re.compile(r"\b(?:BOTTOM|LOWER|FRONT)[ -]+LEFT\b", re.IGNORECASE)
 _NEAR_LINES = 3

@@ -13,6 +13,7 @@ from typing import Any
 from twin.drafting.comments.program_text import Comment, Unit
 from twin.drafting.comments.tool_words import ToolStatement, described, kind_in, length_mm, rounded
 
+_TOOL_WORDS = "TOOL|WERKZEUG|WKZ|OUTIL|HERRAMIENTA|UTENSILE|NARZEDZIE"
 _N = r"-?(?:\d+[ -]\d+/\d+|\d+/\d+|\d+\.?\d*|\.\d+)"
 
 
@@ -24,7 +25,7 @@ class ToolPost:
         post: programs that write it.
         pattern: its text, upper case, with named groups: ``number``, ``text`` (a description), ``d`` (diameter), ``cr``
             (corner radius), ``r`` (corner radius, 0 for a flat tool), ``z`` (teeth), ``len`` (flute length), ``angle``,
-            ``zmin``, ``unit``.
+            ``zmin``, ``wear`` (the radius offset holds the wear only), ``unit``.
         example: a comment of this form, in a program in ``unit``.
         states: values of the example, as in `ToolStatement`.
     """
@@ -75,6 +76,7 @@ def _statement(groups: Mapping[str, str | None], unit: Unit, text: str) -> ToolS
         flute_length_mm=length("len") or words.flute_length_mm,
         angle_deg=float(given["angle"]) or None if "angle" in given else words.angle_deg,
         z_min_mm=length("zmin"),
+        wear=True if "wear" in given else None,
     )
 
 
@@ -117,7 +119,7 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
     ),
     ToolPost(
         post="Mastercam",
-        pattern=rf"^T\s*(?P<number>\d+)\s*\|\s*(?P<text>[^|]*?)\s*\|(?:.*?\b(?:TOOL\s+)?DIA\.?\s*-\s*(?P<d>{_N}))?"
+        pattern=rf"^T\s*(?P<number>\d+)\s*\|\s*(?P<text>[^|]*?)\s*\|(?:.*?(?P<wear>\bWEAR\s+COMP))?(?:.*?\b(?:TOOL\s+)?DIA\.?\s*-\s*(?P<d>{_N}))?"
         rf"(?:.*?\bC(?:R|ORNER\s+RAD(?:IUS)?)\.?\s*-\s*(?P<cr>{_N}))?",
         example="T15 | 1/2 BULL ENDMILL .06 RAD | H15 | D15 | TOOL DIA. - .5",
         states={
@@ -222,7 +224,8 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
     ),
     ToolPost(
         post="Haas, SolidCAM, GibbsCAM, BobCAD, hand-written lists",
-        pattern=r"^TOOL\s*(?:NO\.?|NUMBER|#)?\s*[-:=]?\s*(?P<number>\d+)\s*[-:=|,\s]\s*(?P<text>.*[A-Z].*)$",
+        pattern=rf"^(?:{_TOOL_WORDS})\s*(?:NO\.?|NR\.?|NUMBER|#)?\s*[-:=]?\s*T?(?P<number>\d+)\s*[-:=|,\s]\s*"
+        r"(?P<text>.*[A-Z].*)$",
         example="TOOL 17 - 3/8 EM - DESC: 0.3771 DIA, 2 FLUTE, CARBIDE MAT",
         states={
             "number": 17,
@@ -232,6 +235,19 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
             "name": "3/8 EM - DESC: 0.3771 DIA, 2 FLUTE, CARBIDE MAT",
         },
         unit="inch",
+    ),
+    ToolPost(
+        post="GibbsCAM (list of operations)",
+        pattern=r"^OP\s*\d+\s*:.*?\bTOOL\s+(?P<number>\d+)\s*:\s*(?P<text>.*[A-Z].*)$",
+        example="OP 2: DRILL, TOOL 3: .5 ROUGH ENDMILL",
+        states={"number": 3, "kind": "flat", "diameter_mm": 12.7, "name": ".5 ROUGH ENDMILL"},
+        unit="inch",
+    ),
+    ToolPost(
+        post="NX, PowerMill, Cimatron (name of the tool)",
+        pattern=rf"^(?:D|B|EM)(?P<d>{_N})R(?P<r>{_N})(?![\w.])",
+        example="D16R0.8",
+        states={"kind": "bull", "diameter_mm": 16.0, "corner_radius_mm": 0.8, "name": "D16R0.8"},
     ),
     ToolPost(
         post="SolidCAM, CamBam, hand-written lists",
@@ -297,12 +313,12 @@ def _read(text: str, unit: Unit) -> tuple[ToolPost, ToolStatement] | None:
         if post is TOOL_POSTS[-1] and kind_in(text) is None:
             return None
         states = post.read(text, unit)
-        if states is not None and _says_enough(states, post):
+        if states is not None and _is_enough(states, post):
             return post, states
     return None
 
 
-def _says_enough(states: ToolStatement, post: ToolPost) -> bool:
+def _is_enough(states: ToolStatement, post: ToolPost) -> bool:
     """Free text is about a tool only where it states a kind and a size; other forms need one of them."""
     if post is TOOL_POSTS[-1]:
         return states.kind is not None and states.diameter_mm is not None

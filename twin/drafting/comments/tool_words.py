@@ -11,39 +11,52 @@ from dataclasses import dataclass, replace
 from twin.drafting.comments.program_text import Unit
 
 _INCH_MM = 25.4
+#: ``Fräser`` as posts write it, with any two characters in place of a letter that was lost.
+_FRAESER = r"FR(?:AE|Ä|A|\W{1,2})SER"
 #: Kinds by the words that name them; the first that is found counts, so special tools come before general ones.
 _KINDS: tuple[tuple[str, str], ...] = (
     ("probe", r"PROBE|TASTER|EDGE ?FINDER"),
-    ("spot drill", r"SPOT|CENT(?:ER|RE)[ -]?DRILL|(?:NC[ -]?)?ANBOHRER|ZENTRIERBOHRER"),
+    ("spot drill", r"SPOT(?:TING|DRILL\w*)?|CENT(?:ER|RE)[ -]?DRILL\w*|(?:NC[ -]?)?ANBOHRER|ZENTRIERBOHRER|POINTER"),
     ("flat", r"SLOT[ -]?DRILL"),
-    ("drill", r"DRILL|BOHRER|FORET|BROCA|WIERTLO|PUNTA"),
-    ("tap", r"TAP|TAPPING|GEWINDEBOHRER|TARAUD"),
-    ("thread mill", r"THREAD[ -]?MILL(?:ING)?|GEWINDEFR(?:AE|Ä|A)SER"),
-    ("reamer", r"REAM(?:ER|ING)?|REIBAHLE"),
+    ("drill", r"\w*DRILL|\w*(?<!GEWINDE)BOHRER|FORET|BROCA|WIERTLO|PUNTA"),
+    ("tap", r"TAP|TAPPING|GEWINDEBOHRER|TARAUD|MASCHIO|MACHO"),
+    ("thread mill", rf"THREAD[ -]?MILL(?:ING)?|GEWINDE{_FRAESER}"),
+    ("reamer", r"REAM(?:ER|ING)?|REIBAHLE|ALESOIR|ALESATORE|ESCARIADOR"),
     ("boring bar", r"BORING(?:[ -](?:BAR|HEAD))?|BORE[ -]?BAR"),
     ("dovetail mill", r"DOVE[ -]?TAIL"),
     ("slot mill", r"T[ -]?SLOT|SLOT[ -]?MILL|WOODRUFF|KEY[ -]?(?:SEAT|CUTTER)|SLITTING"),
     ("lollipop mill", r"LOLLI[ -]?POP|UNDERCUT"),
     ("counterbore", r"COUNTER[ -]?BORE|C[ -]?BORE"),
-    ("chamfer mill", r"CHAM(?:FER)?|V[ -]?(?:BIT|GROOVE)|ENGRAV\w*|C(?:OUNTER)?[ -]?SINK|FASENFR\w*|GRAVIER\w*"),
+    (
+        "chamfer mill",
+        r"CHAM(?:FER)?|V[ -]?(?:BIT|GROOVE)|ENGRAV\w*|C(?:OUNTER)?[ -]?SINK"
+        r"|FASENFR\w*|GRAVIER\w*|GRAVUR\w*|CHANFREIN\w*|SMUSS\w*|AVELLANADOR",
+    ),
     ("taper", r"TAPER(?:ED)?|CONICAL|KONISCH"),
-    ("ball", r"BALL(?:[ -]?(?:NOSE|END|MILL|ENDMILL))?|SPHER\w*|KUGEL\w*|BOULE|E?SF[EÉ]RIC\w*|BOLA|KULOWY"),
-    ("bull", r"BULL(?:[ -]?(?:NOSE|END|MILL|ENDMILL))?|TOR(?:US|IC|IQUE|OID\w*)|TORUSFR\w*"),
-    ("face mill", r"FACE[ -]?MILL(?:ING)?|SHELL[ -]?MILL|FLY[ -]?CUTTER|PLANFR\w*|FACING|MESSERKOPF"),
+    (
+        "ball",
+        r"BALL(?:[ -]?(?:NOSED?|END|MILL|ENDMILL))?|(?:H[EÉ]MI)?SPH[EÉ]R\w*|KUGEL\w*|BOULE|E?SF[EÉ]RIC\w*|BOLA|KULOWY"
+        r"|VOLLRADIUS\w*|BOUT ROND",
+    ),
+    ("bull", r"BULL(?:[ -]?(?:NOSED?|END|MILL|ENDMILL))?|TOR(?:US|IC|IQUE|OID\w*)|TORUSFR\w*|ECKRADIUS\w*"),
+    (
+        "face mill",
+        r"FACE[ -]?MILL(?:ING)?|SHELL[ -]?MILL|FLY[ -]?CUTTER|PLANFR\w*|FACING|MESSERKOPF|[AÀ] SURFACER|PLANEAR|SPIANARE",
+    ),
     ("flat", r"END[ -]?MILL\d*|E/?M|FLAT|SQUARE|ROUTER|(?:UP|DOWN)[ -]?CUT|COMPRESSION|\w+[ -]?FLUTE|MILL|CUTTER"),
-    ("flat", r"SCHAFTFR\w*|FR(?:AE|Ä|A)SER\d*|FREZA|FREZ|FRAISE|FRESA|CYLIND\w*"),
+    ("flat", rf"SCHAFTFR\w*|\w*{_FRAESER}\w*|FREZA|FREZ|FRAISE|FRESA|CYLIND\w*"),
 )
 _KIND = tuple((kind, re.compile(rf"(?<![A-Z])(?:{words})(?![A-Z])")) for kind, words in _KINDS)
 
 _ANY_KIND = re.compile("|".join(words for _, words in _KINDS))
 
-_NUMBER = r"(?:\d+[ -]\d+/\d+|\d+/\d+|\d*\.\d+|\d+\.?)"
+_NUMBER = r"(?:\d+[ -]\d+/\d+|\d+/\d+|\d+,\d+|\d*\.\d+|\d+\.?)"
 _UNIT = r"(?:MM|MILLIMET\w*|INCH\w*|IN\b|''|\"|”|″)"
 #: A diameter, the surest mark first.
 _DIAMETERS = tuple(
     re.compile(pattern)
     for pattern in (
-        rf"\bDIA(?:M(?:ETER)?|MET\w*)?\b\.?\s*[-:=]?\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?",
+        rf"\b(?:DIA(?:M(?:ETER)?|MET\w*)?|DM|DURCHM\w*)\b\.?\s*[-:=]?\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?",
         rf"(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?\s*-?\s*DIA(?:M(?:ETER)?)?\b",
         rf"[Ø⌀]\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?",
         rf"(?<![A-Z0-9])D\s*[:=]?\s*(?P<n>{_NUMBER})(?![\d/])\s*(?P<u>{_UNIT})?",
@@ -55,15 +68,23 @@ _DIAMETERS = tuple(
 #: A bare number right before a word of the tool's kind.
 _BARE = re.compile(rf"(?<![A-Z0-9.#-])(?P<n>{_NUMBER})\s+(?=[A-Z])(?P<rest>.*)")
 _CORNER = re.compile(
-    rf"(?:\bCORNER[ _-]?RAD(?:IUS)?\b\.?|\bCRN?\b\.?|\bRAD(?:IUS)?\b\.?|(?<![A-Z0-9])R)\s*[:=-]?\s*(?P<n>{_NUMBER})"
+    rf"(?:\b(?:CORNER|TIP|ECK\w*)[ _-]?RAD(?:IUS)?\b\.?|\bCRN?\b\.?|\bRAD(?:IUS)?\b\.?|(?<![A-Z0-9])R)\s*[:=-]?\s*(?P<n>{_NUMBER})"
     rf"\s*(?P<u>{_UNIT})?|(?P<n2>{_NUMBER})\s*(?P<u2>{_UNIT})?\s*(?:CR|RAD|CORNER)\b"
 )
-_TEETH = re.compile(
-    r"(?<![\d.])(\d{1,2})\s*[-_]?\s*(?:FLUTES?|FLT?S?|TEETH|TOOTH|ZAHN\w*|Z)(?![A-Z])|(?<![A-Z0-9])Z\s*=?\s*(\d{1,2})(?![\d.])"
-    r"|(?:FLUTES|TEETH)\s*[:=]\s*(\d{1,2})"
+#: Flutes; ``Z4`` before ``4Z``: the number before the blank in ``D16 Z4`` is the diameter.
+_TEETH = tuple(
+    re.compile(pattern)
+    for pattern in (
+        r"(?<![A-Z0-9])Z\s*=?\s*(\d{1,2})(?![\d.,])",
+        r"(?:FLUTES|TEETH)\s*[:=]\s*(\d{1,2})",
+        r"(?<![\d.])(\d{1,2})\s*[-_]?\s*(?:FLUTES?|FLT?S?|TEETH|TOOTH|DENTS|ZAHN\w*|SCHNEIDEN)(?![A-Z])",
+        r"(?<![\d.])(\d{1,2})Z(?![A-Z\d])",
+    )
 )
 #: Corner radius from which an end mill is a ball-nose one, in diameters.
 _BALL_PART = 0.495
+#: A thread's diameter: ``M10``, ``M8X1.25``.
+_METRIC_THREAD = re.compile(r"(?<![A-Z0-9])M\s*(\d+(?:[.,]\d+)?)")
 _FLUTE_WORDS = {"SLOT DRILL": 2, "SINGLE FLUTE": 1, "O FLUTE": 1, "SINGLE-FLUTE": 1, "O-FLUTE": 1}
 _FLUTE_LENGTH = re.compile(rf"\b(?:LOC|LCF|FLUTE[ _-]?LEN(?:GTH)?)\b\.?\s*[:=-]?\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?")
 _HELIX = re.compile(r"\bHELIX\b\s*[:=-]?\s*(\d+(?:\.\d+)?)|(\d+(?:\.\d+)?)\s*(?:DEG(?:REES?)?)?\s*HELIX\b")
@@ -80,6 +101,7 @@ class ToolStatement:
         kind: ``flat``, ``ball``, ``bull``, ``taper``, or a kind that is not simulated, as ``drill``.
         angle_deg: half angle of a chamfer mill or a taper, full angle of the point of a drill.
         z_min_mm: lowest Z that the post states for the tool.
+        wear: whether the program is posted for the wear only in the tool's radius offset.
     """
 
     number: int | None = None
@@ -92,6 +114,7 @@ class ToolStatement:
     flute_length_mm: float | None = None
     angle_deg: float | None = None
     z_min_mm: float | None = None
+    wear: bool | None = None
 
     def over(self, other: ToolStatement) -> ToolStatement:
         """These values, and those of another statement where there are none."""
@@ -144,8 +167,8 @@ def described(text: str, unit: Unit) -> ToolStatement:
     upper = text.upper().replace("_", " ")
     kind = kind_in(text)
     corner = _length(_CORNER.search(upper), unit)
-    diameter = _diameter(upper, unit)
-    if kind == "flat" and corner and diameter:
+    diameter = _diameter(upper, kind, unit)
+    if kind in (None, "flat") and corner and diameter:
         kind = rounded(corner, diameter)
     helix, angle = _HELIX.search(upper), _ANGLE.search(_HELIX.sub(" ", upper))
     return ToolStatement(
@@ -165,8 +188,12 @@ def _half_angle(angle_deg: float, kind: str | None) -> float:
     return 0.5 * angle_deg if kind == "chamfer mill" else angle_deg
 
 
-def _diameter(upper: str, unit: Unit) -> float | None:
-    upper = _CORNER.sub(lambda m: " " if m["n"] or m["n2"] else m[0], _FLUTE_LENGTH.sub(" ", _TEETH.sub(" ", upper)))
+def _diameter(upper: str, kind: str | None, unit: Unit) -> float | None:
+    if kind in ("tap", "thread mill") and (thread := _METRIC_THREAD.search(upper)) is not None:
+        return length_mm(thread[1], "MM", unit)
+    for pattern in _TEETH:
+        upper = pattern.sub(" ", upper)
+    upper = _CORNER.sub(lambda m: " " if m["n"] or m["n2"] else m[0], _FLUTE_LENGTH.sub(" ", upper))
     for pattern in _DIAMETERS:
         for match in pattern.finditer(upper):
             if (value := length_mm(match["n"], match["u"], unit)) > 0.0:
@@ -188,8 +215,8 @@ def _length(match: re.Match[str] | None, unit: Unit) -> float | None:
 
 
 def _teeth(upper: str) -> int | None:
-    match = _TEETH.search(upper)
-    if match is not None:
-        count = int(next(group for group in match.groups() if group))
-        return count or None
+    for pattern in _TEETH:
+        match = pattern.search(upper)
+        if match is not None and int(match[1]):
+            return int(match[1])
     return next((count for words, count in _FLUTE_WORDS.items() if words in upper), None)
