@@ -118,6 +118,7 @@ class MachineSettings:
         block_delete: True if the block delete switch is on.
         optional_stop: True if the optional stop switch is on; the `ProgramStop` event reports it.
         units: unit of lengths and feeds until the first G20 or G21.
+        g70_units: G70 and G71 set inches and millimetres as G20 and G21 do, as on Mach3 and in some posts of NX.
         machine_units: unit of the machine's offset variables, as a program reads and sets them (LinuxCNC).
         decimal_point: numbers without a decimal point: ``calculator``: X100 is 100 mm; ``increment``: X100 is 100 least
             input increments (0.001 mm or 0.0001 inch each). FANUC: parameter 3401 bit 0.
@@ -147,6 +148,7 @@ class MachineSettings:
     block_delete: bool = False
     optional_stop: bool = False
     units: Literal["mm", "inch"] = "mm"
+    g70_units: bool = False
     machine_units: Literal["mm", "inch"] = "mm"
     decimal_point: Literal["calculator", "increment"] = "calculator"
     compensation_startup: Literal["A", "B"] = "A"

@@ -37,6 +37,9 @@ _BUILDER = CodeRule(
 #: Codes after whose motions a corner may be cut or rounded.
 _CORNERED = frozenset({"G1", "G2", "G3"})
 
+#: Codes that some controls have for those of units (`MachineSettings.g70_units`).
+UNIT_CODES: Mapping[str, str] = {"G70": "G20", "G71": "G21"}
+
 
 class Use(NamedTuple):
     """A code of a block, and the word that wrote it."""
@@ -128,7 +131,8 @@ def _option_notice(block: ParsedBlock, use: Use) -> Notice:
 def _rule(state: State, block: ParsedBlock, word: Word) -> CodeRule:
     """The rule of a code word; refuses what the dialect does not know or does not support."""
     dialect = state.control.dialect
-    rule = dialect.codes.get(code_name(word.letter, word.value))
+    name = code_name(word.letter, word.value)
+    rule = dialect.codes.get(UNIT_CODES.get(name, name) if state.control.settings.g70_units else name)
     if word.letter == "M" and word.value in state.control.settings.m_codes:
         if rule is not None and rule.status in (Status.EXECUTED, Status.NEUTRAL):
             problem = (

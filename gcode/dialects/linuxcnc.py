@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gcode.cycles import LINUXCNC_CYCLES
-from gcode.dialects.codes import FULL, Table, cycle_meanings, executed, noticed, owning, refused
+from gcode.dialects.codes import FULL, Status, Table, cycle_meanings, executed, noticed, owning, refused, rules
 from gcode.dialects.dialect import ArcTolerance, Dialect, DwellWord
 from gcode.dialects.macro_language import LINUXCNC_MACRO
 
@@ -48,6 +48,7 @@ CODES: Table = {
     **executed("tool-change", "tool_change", {"M61": "set the current tool"}, "Q"),
     **executed("state", "state", {"M70": "save state", "M71": "discard the saved state", "M72": "restore state"}),
     **executed("state", "state", {"M73": "save state, restored on return"}),
+    **rules("scaling", Status.NEUTRAL, {"G50": "scaling cancel"}, option="the extensions of PathPilot"),
     **noticed("path", {"G61": "exact path", "G61.1": "exact stop"}),
     **noticed("path", {"G64": "path blending"}, "PQ"),
     **noticed("override", {"M50": "feed override", "M51": "spindle speed override", "M53": "feed hold control"}, "P"),

@@ -26,6 +26,8 @@ _FOREIGN, _BUILDER = 2, 1
 PROOF = 2
 #: Dialects that files of a suffix are written in.
 _SUFFIXES: Mapping[str, tuple[str, ...]] = {".ngc": ("linuxcnc", "grbl"), ".nc": (), ".gc": ("grbl",)}
+#: Names of a control in comments: its own, and those of controls that were made from it.
+_NAMES: Mapping[str, str] = {name: name for name in DIALECTS} | {"linuxcnc": "linuxcnc|emc2|pathpilot|mach[234]"}
 #: M codes that call subprograms, which no machine builder takes for anything else.
 _CALLS = frozenset(
     float(rule.code[1:])
@@ -117,8 +119,9 @@ def _usual(program: Program, names: list[str]) -> tuple[str, str]:
         if name in names:
             return name, f"its name ends in {suffix}"
     for name in names:
-        if re.search(rf"[(;][^\n]*(?<![^\W_]){name}(?![^\W_])", program.head, re.IGNORECASE):
-            return name, f"a comment names {name}"
+        named = re.search(rf"[(;][^\n]*(?<![^\W_])({_NAMES[name]})(?![^\W_])", program.head, re.IGNORECASE)
+        if named is not None:
+            return name, f"a comment names {named[1]}"
     return names[0], f"nothing in it speaks against {names[0]}"
 
 

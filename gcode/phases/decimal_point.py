@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from gcode.control.command import code_name
+from gcode.control.command import UNIT_CODES, code_name
 from gcode.control.state import AXES, State
 from gcode.cycles import Cycle
 from gcode.events import PLANE_AXES
@@ -47,6 +47,8 @@ def in_increments(state: State, block: ParsedBlock) -> ParsedBlock:
 
 
 def _is_inch(state: State, codes: set[str]) -> bool:
+    if state.control.settings.g70_units:
+        codes = {UNIT_CODES.get(code, code) for code in codes}
     if codes & {"G20", "G21"}:
         return "G20" in codes
     return state.modes.unit_mm != 1.0

@@ -11,7 +11,7 @@ from gcode.control.state import AXES, EXTRA_AXES, State, WorkOffset
 from gcode.events import Event, Extra, Notice, Point
 from gcode.language.blocks import Word
 from gcode.phases.modes import Action, Result, not_negative, whole_number
-from gcode.settings import ToolOffset
+from gcode.settings import NUMBERED_OFFSETS, ToolOffset
 
 #: Additional work offsets that have codes of their own.
 _SAME_OFFSETS: Mapping[str, str] = {f"G{109 + n}": f"G54.1 P{n}" for n in range(1, 21)}
@@ -25,11 +25,14 @@ def known_offsets(state: State) -> str:
 
 
 def set_work_offset(state: State, command: Command) -> Result:
-    """G54 to G59 and the further ones of a dialect."""
+    """G54 to G59 and the further ones of a dialect.
+
+    In a block with a call, as ``G54 M98 P200``, P is the subprogram's number.
+    """
     use = command.of_phase("work_offset")[0]
     name = _SAME_OFFSETS.get(use.rule.code, use.rule.code)
     word = command.words.get("P")
-    if use.rule.letters and word is not None:
+    if use.rule.letters and word is not None and not (command.of_phase("call") and name in NUMBERED_OFFSETS):
         name = additional_offset(state, command, word)
     elif name == "G54.1":
         name = "G54.1 P1"

@@ -166,6 +166,7 @@ _FIELDS: Mapping[str, Callable[[Node], Any]] = MappingProxyType(
         "block_delete": Node.flag,
         "optional_stop": Node.flag,
         "units": _choice("mm", "inch"),
+        "g70_units": Node.flag,
         "machine_units": _choice("mm", "inch"),
         "decimal_point": _choice("calculator", "increment"),
         "compensation_startup": _choice("A", "B"),

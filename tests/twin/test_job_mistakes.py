@@ -53,7 +53,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ),
     (
         {"machine__offsets__G60": [0, 0, 0]},
-        "machine.offsets.G60: unknown key; expected one of G54, G55, G56, G57, G58, G59, G59.1, G59.2, G59.3",
+        "machine.offsets.G60: unknown key; expected G54 to G59, G59.1 to G59.3, or G54.1 P1 to P300",
     ),
     ({"machine__offsets__G55": [0, 0]}, "machine.offsets.G55 = [0, 0]: expected a list of three numbers"),
     ({"machine__offsets__G55": [0, "1", 0]}, 'machine.offsets.G55[1] = "1": expected a number'),

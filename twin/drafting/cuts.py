@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gcode.events import PLANE_AXES, MotionState
 from gcode.language.program import Program
 from gcode.report.motion_arrays import MotionArrays, MotionKind, motion_arrays
-from gcode.settings import NUMBERED_OFFSETS, MachineSettings, ToolOffset
+from gcode.settings import ALL_OFFSETS, MachineSettings, ToolOffset
 from twin.arrays import FloatArray
 
 #: Position of the gauge point at the reference point and at the start of the program, above all work, mm.
@@ -114,7 +114,7 @@ def cuts_of(
     """
     tools = None if radii_mm is None else {number: ToolOffset(radius_mm=r) for number, r in radii_mm.items()}
     settings = MachineSettings(
-        offsets=dict.fromkeys(NUMBERED_OFFSETS, (0.0, 0.0, 0.0)),
+        offsets=dict.fromkeys(ALL_OFFSETS, (0.0, 0.0, 0.0)),
         home_mm=HOME_MM,
         start_mm=HOME_MM,
         tools=tools,

@@ -20,6 +20,8 @@ _LARGEST_MM, _OF_EXTENT = 160.0, 4.0
 _CHIP_PART = 0.125
 #: Passes that are counted as parallel, and the number of equal stepovers that makes a pattern.
 _LONG_DIAMETERS, _EQUAL, _PATTERN = 3.0, 0.01, 4
+#: A contour runs along this part of the sides of the box around the path, and sweeps less than this part of its area.
+_OF_SIDES, _OF_AREA = 0.55, 0.6
 
 
 def doubts(cuts: Cuts, tools: Sequence[DraftTool], top_mm: float, notes: Notes) -> None:
@@ -39,6 +41,35 @@ def doubts(cuts: Cuts, tools: Sequence[DraftTool], top_mm: float, notes: Notes) 
             *_chip(tool, below),
         ):
             notes.warnings.append(f"T{tool.number}: {problem}")
+
+
+def outside_contours(cuts: Cuts, tools: Sequence[DraftTool], low_mm: FloatArray, high_mm: FloatArray) -> Iterator[str]:
+    """Contours that may go around a part: in an assumed box of stock, which extends to their far side, they cut slots.
+
+    Args:
+        low_mm, high_mm: corners of the box.
+    """
+    size = (high_mm - low_mm)[:2]
+    for tool in tools:
+        feed = cuts.feed.only((cuts.feed.tool == tool.number) & cuts.feed.level & cuts.feed.sideways)
+        feed = feed.only(feed.low_mm[:, 2] < high_mm[2])
+        if tool.kind not in MILLS or not len(feed.tool):
+            continue
+        level = feed.only(feed.low_mm[:, 2] < feed.low_mm[:, 2].min() + _DEPTH_MM)
+        radius = 0.5 * tool.diameter_mm
+        low, high = (
+            np.abs(level.low_mm[:, :2] - low_mm[:2] - radius),
+            np.abs(high_mm[:2] - radius - level.high_mm[:, :2]),
+        )
+        along = (level.high_mm - level.low_mm)[:, 1::-1]
+        thin = (level.high_mm - level.low_mm)[:, :2] < _DEPTH_MM
+        run = float(along[thin & (np.minimum(low, high) < _DEPTH_MM)].sum())
+        swept = float(level.length_mm.sum()) * tool.diameter_mm
+        if run > _OF_SIDES * 2.0 * float(size.sum()) and swept < _OF_AREA * float(size.prod()):
+            yield (
+                f"T{tool.number} runs along the sides of the assumed stock only: if that is the outside of the part, a "
+                "blank is smaller than this box, and the tool cuts less than the full slot here; give --stock"
+            )
 
 
 def _size(tool: DraftTool, feed: Feed) -> Iterator[str]:

@@ -4,25 +4,23 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from gcode.dialects import DIALECTS
 from gcode.errors import GcodeError
-from gcode.flow.interpreter import taken_dialect
 from gcode.language.program import Program, read_program
 from twin.drafting.comments.program_text import ProgramText
 from twin.drafting.comments.stock_posts import stock_comment
 from twin.drafting.comments.tool_words import ToolStatement
-from twin.drafting.cuts import Cuts, cuts_of
-from twin.drafting.doubts import doubts
+from twin.drafting.cuts import Cuts
+from twin.drafting.doubts import doubts, outside_contours
 from twin.drafting.estimate import Estimate, estimate
 from twin.drafting.fineness import Fineness, fineness_of
 from twin.drafting.from_library import library_tools
 from twin.drafting.notes import Assumption, Notes
+from twin.drafting.runs import ProgramRuns
 from twin.drafting.settings import DraftSettings
 from twin.drafting.stock import CutShape, StockBox, stock_of
 from twin.drafting.tables import DraftTable, file_text
@@ -40,6 +38,8 @@ class JobDraft:
     Attributes:
         path: the job file, which need not exist.
         assumptions: values that the program does not state.
+        assumed: the same in words, a line for each subject and reason.
+        stated: tools and stock that comments of the program state, in words.
         open: what could not be assumed, and what to do about it.
         warnings: contradictions in the program or with what was given.
         estimate: time, memory and file sizes of a replay.
@@ -49,6 +49,7 @@ class JobDraft:
     path: Path
     assumptions: tuple[Assumption, ...]
     assumed: tuple[str, ...]
+    stated: tuple[str, ...]
     open: tuple[str, ...]
     warnings: tuple[str, ...]
     estimate: Estimate
@@ -120,22 +121,18 @@ class _Drafting:
         self.program: Program = read_program(file)
         self.text = ProgramText(self.program)
         self.notes = Notes()
-        dialect, notice = taken_dialect(self.program, given.dialect)
-        self.dialect = dialect.name
-        self.dialect_reason = "" if notice is None else notice.text.partition(": ")[2]
-        self.others = [name for name in DIALECTS if name != self.dialect] if given.dialect == "auto" else []
+        self.runs = ProgramRuns(self.program, given, self.notes)
         self.wear: dict[int, str] = {}
-        self.more: dict[str, Any] = {"m_codes": dict.fromkeys(given.m_codes, "none")}
 
     def draft(self) -> JobDraft:
         """All steps."""
         tool = self.given.tool or 0
-        cuts = self._first_run(tool)
+        cuts = self.runs.first(tool)
         if not len(cuts.feed.tool):
             raise ReplayError(f"{self.file}: the program has no feed motion; there is nothing to cut")
         if 0 in cuts.tools:
             tool = self._first_tool()
-            cuts = self._run(tool)
+            cuts = self.runs.run(tool)
         if 0 in cuts.tools:
             line = int(cuts.feed.line[cuts.feed.tool == 0][0])
             raise ReplayError(
@@ -163,45 +160,12 @@ class _Drafting:
             path=self.target,
             assumptions=tuple(self.notes.assumptions),
             assumed=tuple(self.notes.lines()),
+            stated=tuple(self.notes.stated),
             open=tuple(self.notes.open),
             warnings=tuple(self.notes.warnings),
             estimate=estimate(cuts, stock, fine, tools, forces=self._forces(tools)),
             tables=tuple(tables),
         )
-
-    def _first_run(self, tool: int) -> Cuts:
-        """Run the program in the likeliest dialect; one that is refused there, in the first dialect that takes it."""
-        try:
-            return self._run(tool)
-        except GcodeError as error:
-            refused, first = error, self.dialect
-        for name in self.others:
-            self.dialect = name
-            try:
-                cuts = self._run(tool)
-            except GcodeError:
-                continue
-            self.dialect_reason = f"{first} refuses line {refused.place.line}: {refused.problem}"
-            return cuts
-        raise refused
-
-    def _run(self, tool: int, radii_mm: Mapping[int, float] | None = None) -> Cuts:
-        """Run the program; arcs whose centres do not fit are tried with absolute ones."""
-        try:
-            return cuts_of(self.program, self.dialect, tool=tool, radii_mm=radii_mm, **self.more)
-        except GcodeError as error:
-            if error.code != "arc-radius" or "arc_centres" in self.more:
-                raise
-            try:
-                cuts = cuts_of(
-                    self.program, self.dialect, tool=tool, radii_mm=radii_mm, **self.more, arc_centres="absolute"
-                )
-            except GcodeError:
-                raise error from None
-            self.more["arc_centres"] = "absolute"
-            reason = f"with incremental ones, line {error.place.line} is not an arc"
-            self.notes.assume("program", "arc centres I, J, K are coordinates", reason)
-            return cuts
 
     def _first_tool(self) -> int:
         """The tool in the spindle at the start of a program that cuts before its first tool change."""
@@ -229,7 +193,7 @@ class _Drafting:
         comment = "the program is posted for the wear only: its comment states WEAR COMP"
         self.wear = {one.number: comment for one in tools if one.states.wear and one.number in cuts.compensated}
         try:
-            compensated = self._run(tool, radii)
+            compensated = self.runs.run(tool, radii)
         except GcodeError as error:
             self.wear = dict.fromkeys(cuts.compensated, "assumed: the program is posted for the wear only")
             self.notes.warnings.append(
@@ -253,6 +217,8 @@ class _Drafting:
         given = self.given
         shape = CutShape.of(cuts.feed, radii, facing)
         stock = stock_of(shape, stated, given.stock, given.margin_mm, self.notes, self.target.parent)
+        if stated is None and given.stock is None:
+            self.notes.warnings += outside_contours(cuts, tools, stock.low_mm, stock.high_mm)
         if cuts.offsets[0] != "G54":
             stock.table.add("wcs", cuts.offsets[0])
         return stock
@@ -269,14 +235,15 @@ class _Drafting:
     def _program_table(self, tool: int) -> DraftTable:
         table = DraftTable(name="program")
         table.add("file", Path(os.path.relpath(self.file, self.target.parent)).as_posix())
-        table.add("dialect", self.dialect, f"assumed: {self.dialect_reason}" if self.dialect_reason else "")
+        dialect, reason = self.runs.dialect, self.runs.dialect_reason
+        table.add("dialect", dialect, f"assumed: {reason}" if reason else "")
         if self.given.dialect == "auto":
-            self.notes.assume("program", f"dialect {self.dialect}", self.dialect_reason)
+            self.notes.assume("program", f"dialect {dialect}", reason)
         if not self.text.states_unit:
             table.add("units", "mm", "assumed: the program has no G20 or G21")
             self.notes.assume("program", "lengths in mm", "it has no G20 or G21")
-        if "arc_centres" in self.more:
-            table.add("arc_centres", "absolute", "assumed: with incremental ones, the arcs have no common radius")
+        for remedy in self.runs.remedies:
+            table.add(remedy.key, remedy.value, f"assumed: {remedy.comment}")
         if tool:
             table.add("tool", tool, "" if self.given.tool else "assumed: it cuts before its first tool change")
         if self.given.m_codes:
@@ -293,7 +260,7 @@ class _Drafting:
         table.add("offsets", {wcs: [0.0, 0.0, z] for wcs in cuts.offsets}, f"assumed: {reason}")
         names = ", ".join(cuts.offsets)
         self.notes.assume("machine", f"{names} at {f'Z{z:g}' if z else '0'}", reason)
-        if len(cuts.offsets) > 1:
+        if len(cuts.offsets) > 1 and not self.text.sets_offsets:
             self.notes.warnings.append(
                 f"the program uses {len(cuts.offsets)} work offsets ({names}), and all of them are taken at the same "
                 "position; set machine.offsets in the job file (twin job)"

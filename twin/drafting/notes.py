@@ -29,8 +29,13 @@ class Assumption:
 
 @dataclass(slots=True)
 class Notes:
-    """Assumptions, warnings and open values of one draft, in order."""
+    """Assumptions, warnings and open values of one draft, in order.
 
+    Attributes:
+        stated: values that comments of the program state, in words, with their lines.
+    """
+
+    stated: list[str] = field(default_factory=list)
     assumptions: list[Assumption] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     open: list[str] = field(default_factory=list)

@@ -25,6 +25,8 @@ _ABOVE_SHARE = 0.05
 #: Share of the path at a level from which it counts as a level, and least stock above a level, mm.
 _LEVEL_SHARE, _ABOVE_LEVEL_MM = 0.05, 1.0
 _SAME_MM = 1e-3
+#: Share of a stock's size that entries and exits may be next to it.
+_OVER_SHARE = 0.25
 #: A path that is all this far below Z0 has its zero elsewhere than on the stock, mm.
 _DEEPEST_MM = 30.0
 _EXPECTED = "'box X Y Z', 'cylinder D H', either with 'at X Y Z' (centre in X and Y, top in Z), or an STL file"
@@ -138,8 +140,8 @@ def _entries(feed: Feed) -> NDArray[np.bool_]:
 def _links(feed: Feed) -> NDArray[np.bool_]:
     """Motions between a retract at feed and the next plunge: some posts write rapids as feed motions.
 
-    Level motions above Z0 at a height of such retracts are links too, as the approach to the first plunge is, and so are
-    those at the height of the reference point.
+    Level motions above Z0 at a height of such retracts are links too, as the approach to the first plunge is, and so
+    are those at the height of the reference point.
     """
     up = ~feed.sideways & (feed.end_mm[:, 2] > feed.start_mm[:, 2])
     last = np.maximum.accumulate(np.where(~feed.sideways | feed.first, np.arange(len(up)), 0))
@@ -233,20 +235,35 @@ def _box(low: FloatArray, high: FloatArray, reason: str, notes: Notes) -> StockB
 
 
 def _stated(stated: StockStatement, shape: CutShape, notes: Notes) -> StockBox:
-    """The box that a comment states, placed as it states, else over the cutting motions."""
+    """The box that a comment states, placed as it states, else with its corner or centre at zero or over the cuts."""
+    extents = " x ".join(f"{length:g}" for length in stated.size_mm)
+    notes.stated.append(f"stock {extents} mm (line {stated.line})")
     size = np.array(stated.size_mm)
     given = [value is not None for value in stated.low_mm]
-    low = _placed(size, shape)
+    low, where = _likely(size, shape)
     low = np.array([float(a) if a is not None else b for a, b in zip(stated.low_mm, low.tolist(), strict=True)])
     table = DraftTable(name="stock", comments=[f"size stated in line {stated.line} of the program"])
     if not all(given):
         axes = " and ".join(axis for axis, known in zip("XYZ", given, strict=True) if not known)
-        reason = f"line {stated.line} states the size only; centred over the cutting motions, top {shape.top.reason}"
+        reason = f"line {stated.line} states the size only; {where}, top {shape.top.reason}"
         words = ", ".join(f"{axis} from {a:g}" for axis, a, known in zip("XYZ", low, given, strict=True) if not known)
         notes.assume("stock", f"position {words}", reason)
         table.comments.append(f"assumed: position along {axes}: {reason}")
     table.add("box_mm", {"min": low.tolist(), "max": (low + size).tolist()})
     return StockBox(low_mm=low, high_mm=low + size, table=table)
+
+
+def _likely(size: FloatArray, shape: CutShape) -> tuple[FloatArray, str]:
+    """Lower corner of a box of stated size in a program whose zero is usually at its corner or its centre."""
+    low = _placed(size, shape)
+    best, where, least = low, "centred over the cutting motions", np.inf
+    for zero, name in ((0.0, "corner"), (0.5, "centre")):
+        corner = 0.0 - zero * size
+        over = np.maximum([corner - shape.low_mm, shape.high_mm - corner - size], 0.0)[:, :2]
+        if (over <= _OVER_SHARE * size[:2]).all() and over.sum() < least:
+            best, least = np.array([*corner[:2], low[2]]), float(over.sum())
+            where = f"zero at its {name}, where the cutting motions fit"
+    return best, where
 
 
 def _placed(size: FloatArray, shape: CutShape) -> FloatArray:

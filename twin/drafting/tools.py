@@ -82,7 +82,11 @@ def stated_tools(text: ProgramText, used: Sequence[int], notes: Notes) -> dict[i
         number = _number(found, text, used)
         if number is not None:
             by_tool.setdefault(number, []).append(found)
-    return {number: _merged(number, found, notes) for number, found in by_tool.items()}
+    merged = {number: _merged(number, found, notes) for number, found in by_tool.items()}
+    for number in used:
+        if number in merged:
+            notes.stated.append(f"T{number} {merged[number]} (line {by_tool[number][0].comment.line})")
+    return merged
 
 
 def _number(found: ToolComment, text: ProgramText, used: Sequence[int]) -> int | None:

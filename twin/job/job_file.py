@@ -55,6 +55,9 @@ class Program(Table):
     units: Literal["mm", "inch"] = Field(
         default="mm", description="units in force until the program's first G20 or G21"
     )
+    g70_units: bool = Field(
+        default=False, description="G70 and G71 set inches and millimetres, as on Mach3 and in some posts of NX"
+    )
     tool: int = Field(default=0, ge=0, description="tool in the spindle when the program starts, 0 for none")
     search_path: list[FilePath] = Field(
         default_factory=list, description="folders to search for subprogram files after the program's own folder"
@@ -103,8 +106,8 @@ class Machine(Table):
     )
     offsets: dict[WorkOffset, Point] = Field(
         default={"G54": (0.0, 0.0, 0.0)},
-        description="work offsets, G54 to G59 and G59.1 to G59.3: positions of the work zeros, mm; only "
-        "those listed can be used",
+        description="work offsets, G54 to G59, G59.1 to G59.3 and G54.1 P1 to P300: positions of the work zeros, mm; "
+        "only those listed can be used",
     )
 
 

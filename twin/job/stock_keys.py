@@ -6,11 +6,15 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import ConfigDict, Field, Strict
 
-from twin.settings.table import FilePath, Point, Table
+from twin.settings.table import FilePath, Key, Point, Table
 
 #: The keys of a stock, of which one is given.
 STOCKS = ("box_mm", "cylinder_mm", "stl")
-WorkOffset: TypeAlias = Literal["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"]
+WorkOffset: TypeAlias = Annotated[
+    str,
+    Field(pattern=r"^(G5[4-9]|G59\.[123]|G54\.1 P([1-9]|[1-9]\d|[12]\d\d|300))$"),
+    Key(expected="G54 to G59, G59.1 to G59.3, or G54.1 P1 to P300"),
+]
 
 
 class Box(Table):

@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from twin.settings.keys import bare, fields_of
+from twin.settings.table import Key
 from twin.settings.toml_text import toml_value
 
 Location: TypeAlias = tuple[str | int, ...]
@@ -149,6 +150,10 @@ def allowed(annotation: Any, notes: Iterable[Any] = ()) -> str:
     Args:
         notes: bounds that belong to it.
     """
+    notes = (*notes, *getattr(annotation, "__metadata__", ()))
+    named = next((note.expected for note in notes if isinstance(note, Key) and note.expected), "")
+    if named:
+        return named
     annotation = bare(annotation)
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Literal:

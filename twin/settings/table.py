@@ -41,9 +41,11 @@ class Key:
         metavar: placeholder of the option's value in the help; made from the key's unit if not given.
         unset: effect of a key that is not given and has no default, e.g. ``0.4 of the diameter``.
         as_text: the option takes one text, which the field's validator reads.
+        expected: values that are allowed, in words, where its type does not state them.
     """
 
     options: tuple[str, ...] = ()
     metavar: str | None = None
     unset: str | None = None
     as_text: bool = False
+    expected: str = ""

@@ -182,6 +182,7 @@ def _machine_settings(
         arc_centres=program.arc_centres,
         block_delete=program.block_delete,
         units=program.units,
+        g70_units=program.g70_units,
         search_path=tuple(program.search_path),
         decimal_point=program.decimal_point,
         compensation_startup=program.compensation_startup,

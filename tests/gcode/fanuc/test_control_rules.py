@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcode.events import LinearMotion, Notice
-from gcode.flow.interpreter import check
+from gcode.flow.interpreter import check, interpret
 from gcode.settings import Limits, MachineSettings
 
 
@@ -170,3 +170,21 @@ def test_offsets_that_a_program_makes_are_bounded() -> None:
     assert [(error.code, error.problem) for error in errors] == [
         ("bad-value", "P#1 is one tool offset too many"),
     ]
+
+
+def test_codes_of_units_of_other_controls(run) -> None:
+    """Mach3 and posts of NX: G70 and G71 for G20 and G21, where the settings state it."""
+    assert ends(run("G70 G1 F100 X1\nG71 X1", "fanuc", g70_units=True)) == [(25.4, 0, 0), (1, 0, 0)]
+    settings = MachineSettings(g70_units=True, decimal_point="increment")
+    (motion,) = (event for event in interpret("G70 G1 F9. X1", settings=settings) if isinstance(event, LinearMotion))
+    assert motion.end_mm[0] == pytest.approx(0.00254)
+    for dialect in ("fanuc", "haas", "linuxcnc", "grbl"):
+        (error,) = check("G70 G90", dialect=dialect)
+        assert error.problem.startswith("G70")
+    (error,) = check("G70 I5. J0. L6.", dialect="haas", settings=settings)
+    assert error.problem.startswith("I5")
+
+
+def test_p_of_a_call_is_not_that_of_a_work_offset(run) -> None:
+    events = run("G55 M98 P1\nM30\nO1\nG0 X1.\nM99", "fanuc", offsets={"G54": (0, 0, 0), "G55": (9, 0, 0)})
+    assert ends(events) == [(10, 0, 0)]

@@ -40,12 +40,37 @@ def test_the_example_of_each_post_is_read(post: ToolPost) -> None:
         ("3FL 6mm LOC 13", "mm", {"kind": None, "diameter_mm": 6.0, "teeth": 3, "flute_length_mm": 13.0}),
         ('O Flute 1/4"', "mm", {"kind": "flat", "diameter_mm": 6.35, "teeth": 1}),
         ("End Mill - Diameter 0.25 inches - Collet .25", "mm", {"kind": "flat", "diameter_mm": 6.35}),
+        ("FRAISE 2 TAILLES D16 Z4", "mm", {"kind": "flat", "diameter_mm": 16.0, "teeth": 4}),
+        ("FRAISE A SURFACER D50 Z5", "mm", {"kind": "face mill", "diameter_mm": 50.0, "teeth": 5}),
+        ("FRAISE HEMISPHERIQUE D8", "mm", {"kind": "ball", "diameter_mm": 8.0}),
+        ("SCHAFTFRAESER D10 R0 Z3", "mm", {"kind": "flat", "diameter_mm": 10.0, "teeth": 3}),
+        ("VHM FRÄSER DM 12 ECKENRADIUS 1 Z=4", "mm", {"kind": "bull", "diameter_mm": 12.0, "corner_radius_mm": 1.0}),
+        ("SPIRALBOHRER D8,5", "mm", {"kind": "drill", "diameter_mm": 8.5}),
+        ("GEWINDEBOHRER M10", "mm", {"kind": "tap", "diameter_mm": 10.0}),
+        ("3/8 SPOTDRILL", "inch", {"kind": "spot drill", "diameter_mm": 9.525}),
+        ("TIPRAD DIAMETER 16. TIP RAD 2. LENGTH 80.", "mm", {"kind": "bull", "corner_radius_mm": 2.0}),
+        ("4Z 8MM ENDMILL", "mm", {"kind": "flat", "diameter_mm": 8.0, "teeth": 4}),
         ("POCKET 3", "mm", {"kind": None, "diameter_mm": None}),
     ],
 )
 def test_a_tool_in_words(text: str, unit: Unit, states: dict[str, object]) -> None:
     found = described(text, unit)
     assert {name: getattr(found, name) for name in states} == pytest.approx(states)
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "diameter_mm", "kind"),
+    [
+        ("WERKZEUG T07 KUGEL D8 R4 L40", 7, 8.0, "ball"),
+        ("OUTIL 3 : FRAISE D6", 3, 6.0, "flat"),
+        ("TOOL NO:3 NAME:D10R0.5 DIA:10.00 R:0.50 LEN:75.00", 3, 10.0, "bull"),
+        ("OP 1:  CONTOUR, TOOL 1: .5 ROUGH ENDMILL", 1, 0.5, "flat"),
+        ("EM10R0", None, 10.0, "flat"),
+    ],
+)
+def test_numbers_in_comments(text: str, number: int | None, diameter_mm: float, kind: str) -> None:
+    (found,) = tool_comments(comments(text), "mm")
+    assert (found.states.number, found.states.diameter_mm, found.states.kind) == (number, diameter_mm, kind)
 
 
 @pytest.mark.parametrize(

@@ -145,6 +145,60 @@ def test_a_program_posted_for_wear_has_no_radius_in_its_offset(tmp_path: Path) -
         assert replay.planned_time_s > 0.0
 
 
+def test_a_comment_that_states_wear(tmp_path: Path) -> None:
+    text = changed(
+        ("T3 D=8. CR=0. - ZMIN=-2. - flat end mill", "T3 | 8. FLAT ENDMILL | H3 | D3 | WEAR COMP | TOOL DIA. - 8."),
+        ("X40. F640.", "G41 D3 X9. F640.\nX40.\nG40 X50."),
+    )
+    draft = drafted(tmp_path, text)
+    assert draft.job().tools[0].offset_radius_mm == 0.0
+    assert not [line for line in draft.assumed if "radius 4 mm" in line] and not draft.warnings
+
+
+def test_tools_and_stock_of_comments_are_stated(tmp_path: Path) -> None:
+    draft = drafted(tmp_path, changed(("(SLOT)", "(STOCK 80 X 30 X 10)")))
+    assert draft.stated == ("T3 flat D8 (line 3)", "stock 80 x 30 x 10 mm (line 2)")
+
+
+@pytest.mark.parametrize(("cycle", "kind"), [("G81 X9. Z-3. R2. F100.", "drill"), ("G84 X9. Z-3. R2. F99.", "tap")])
+def test_a_tool_that_only_drills_is_not_an_end_mill(tmp_path: Path, cycle: str, kind: str) -> None:
+    cut = "G1 Z-2. F200.\nX40. F640."
+    text = changed(("T3 D=8. CR=0. - ZMIN=-2. - flat end mill", "T3 : 8."), (cut, f"{cycle}\nG80"))
+    draft = drafted(tmp_path, text, material="Al7075-T6")
+    assert any(line.startswith(f"a {kind} (T3: it only") for line in draft.assumed)
+    assert not draft.job().forces
+
+
+def test_codes_of_units_of_other_controls(tmp_path: Path) -> None:
+    draft = drafted(tmp_path, changed(("G21 G17", "G70 G17"), ("D=8.", "D=.25"), ("(SLOT)", "(FOR MACH3)")))
+    job = draft.job()
+    assert (job.program.g70_units, job.tools[0].diameter_mm) == (True, 6.35)
+    assert "G70 and G71 set inches and millimetres (program: line 4 has no words" in draft.assumed[0]
+    with Replay(job, preview=False) as replay:
+        assert replay.planned_time_s > 0.0
+    with pytest.raises(GcodeError, match="G70"):
+        drafted(tmp_path, changed(("X40. F640.", "G70 I5. J0. L6.")), dialect="haas")
+
+
+def test_additional_work_offsets(tmp_path: Path) -> None:
+    job = drafted(tmp_path, changed(("G54\n", "G54.1 P3\n"))).job()
+    assert (job.machine.offsets, job.stock.wcs) == ({"G54.1 P3": (0.0, 0.0, 0.0)}, "G54.1 P3")
+    with Replay(job, preview=False) as replay:
+        assert replay.planned_time_s > 0.0
+
+
+def test_offsets_that_the_program_sets_need_no_warning(tmp_path: Path) -> None:
+    pairs = ("X40. F640.", "X40. F640.\nG56 X0."), ("G54\n", "G10 L2 P3 X9.\nG54\n")
+    assert not drafted(tmp_path, changed(*pairs)).warnings
+
+
+def test_a_contour_along_the_sides_of_an_assumed_box(tmp_path: Path) -> None:
+    """Its outside is cut as a full slot, which a real blank is too small for."""
+    contour = changed(("X40. F640.", "X80. F640.\nY60.\nX0.\nY0."))
+    assert drafted(tmp_path, contour).warnings[0].startswith("T3 runs along the sides of the assumed stock only")
+    assert not drafted(tmp_path, contour, stock="box 80 60 9").warnings
+
+
 def test_arcs_with_absolute_centres_are_recognised(tmp_path: Path) -> None:
     arc = "X40. F640.\nG3 X40. Y20. I40. J10.\nG3 X30. Y10. I35. J15."
     draft = drafted(tmp_path, changed(("X40. F640.", arc)))

@@ -40,6 +40,8 @@ def levels(*heights: float) -> str:
         ("G0 Z-60.\nG1 Z-70. F300.\nX50.\n", -69.0),
         # rapids at a clearance height written as feed motions
         ("G0 Z5.\n" + "".join(f"G1 Z-2. F100.\nX{40 * (k + 1)}.\nZ5.\nY{9 * k}.\n" for k in range(4)), 0.0),
+        # the same with an approach at the height of the reference point
+        ("G28 G91 Z0.\nG90\nG1 X9. F999.\nZ5.\nZ-2. F100.\nX50.\nZ5.\n", 0.0),
         # facing at Z0: some material is above it
         ("G0 Z5.\nG1 Z0. F100.\nX50. F300.\n", 1.0),
         ("G0 Z0.4\nG1 Z0. F100.\nX50. F300.\n", 0.4),
@@ -109,11 +111,23 @@ def test_a_request_that_cannot_be_read_is_refused(text: str) -> None:
         made(text)
 
 
-def test_a_stated_size_without_a_position_is_centred() -> None:
-    stated = StockStatement(size_mm=(100, 60, 20), low_mm=(None, None, -18.0), line=2, post="x")
+@pytest.mark.parametrize(
+    ("size_mm", "low_mm", "where"),
+    [
+        ((30, 60, 20), (10.0, -30.0), "centred over the cutting motions"),
+        ((100, 60, 20), (-50.0, -30.0), "zero at its centre, where the cutting motions fit"),
+        ((60, 16, 20), (0.0, 0.0), "zero at its corner, where the cutting motions fit"),
+    ],
+)
+def test_a_stated_size_without_a_position(
+    size_mm: tuple[float, float, float], low_mm: tuple[float, float], where: str
+) -> None:
+    """Zero of a program is at a corner of the stock or at its centre where its motions fit in either."""
+    stated = StockStatement(size_mm=size_mm, low_mm=(None, None, -18.0), line=2, post="x")
     box, notes = made(None, stated)
-    np.testing.assert_allclose([box.low_mm, box.high_mm], [[-25, -30, -18], [75, 30, 2]])
-    assert "position X from -25, Y from -30" in notes.lines()[0]
+    np.testing.assert_allclose(box.low_mm, [*low_mm, -18.0])
+    assert f"position X from {low_mm[0]:g}, Y from {low_mm[1]:g}" in notes.lines()[0] and where in notes.lines()[0]
+    assert notes.stated == [f"stock {size_mm[0]} x {size_mm[1]} x 20 mm (line 2)"]
     assert made("box 9 9 9", stated)[0].size_mm.tolist() == [9, 9, 9]
 
 

@@ -13,9 +13,11 @@ from twin.drafting.update import Written
 
 
 def print_notes(draft: JobDraft, *, quiet: bool) -> None:
-    """Print what was assumed, what contradicts itself, what is open, and the estimate, on standard error."""
+    """Print what the program's comments state, assumptions, contradictions, open values and the estimate."""
     console = errors()
     if not quiet:
+        if draft.stated:
+            console.print(Text.assemble(("stated:", "bold"), " ", ", ".join(draft.stated)))
         for line in draft.assumed:
             console.print(Text.assemble(("assumed:", "bold"), " ", line))
     for line in (*draft.warnings, *draft.open):
@@ -44,6 +46,7 @@ def draft_json(draft: JobDraft, written: Written | None) -> str:
     """The draft as one JSON object."""
     value: dict[str, Any] = {
         "job": None if written is None else str(written.path),
+        "stated": list(draft.stated),
         "assumptions": assumption_objects(draft),
         "warnings": list(draft.warnings),
         "open": list(draft.open),

@@ -20,6 +20,7 @@ _MOTION = re.compile(r"(?:^|[^A-Z])[XYZ]\s*[-+.\d\[#]", re.IGNORECASE)
 _UNITS = re.compile(r"G\s*0*(20|21|70|71)(?![\d.])", re.IGNORECASE)
 _COMMENTED_CHANGE = re.compile(r"^M0?6\s*T(\d+)|^T(\d+)\s*M0?6\b", re.IGNORECASE)
 _MACHINE = re.compile(r"G\s*0*53(?![\d.])", re.IGNORECASE)
+_SET_OFFSET = re.compile(r"G\s*0*10(?![\d.]).*L\s*0*20?(?![\d.])", re.IGNORECASE)
 _TAPE = re.compile(r"^\s*(?:%|[O:]\s*\d+\s*$)")
 
 
@@ -55,13 +56,14 @@ class ProgramText:
     def __init__(self, program: Program) -> None:
         self.file = program.file
         comments, tools, motions, units = [], [], [], []
-        self._machine = False
+        self._machine = self._sets_offsets = False
         for line, text in enumerate(program, start=1):
             comments += [Comment(line=line, text=found) for found in _comments(text)]
             words = _COMMENT.sub(" ", text)
             tools += [ToolWord(line=line, number=int(n) if n else None) for n in _TOOL.findall(words)]
             units += [int(n) for n in _UNITS.findall(words)]
             self._machine = self._machine or bool(_MACHINE.search(words))
+            self._sets_offsets = self._sets_offsets or bool(_SET_OFFSET.search(words))
             if _MOTION.search(words):
                 motions.append(line)
         self.comments = tuple(comments)
@@ -83,6 +85,11 @@ class ProgramText:
     def moves_in_machine_coordinates(self) -> bool:
         """Whether a G53 is in the program."""
         return self._machine
+
+    @property
+    def sets_offsets(self) -> bool:
+        """Whether the program sets work offsets itself (G10 L2, L20)."""
+        return self._sets_offsets
 
     @property
     def commented_tool(self) -> int | None:

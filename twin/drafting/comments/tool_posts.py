@@ -119,7 +119,9 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
     ),
     ToolPost(
         post="Mastercam",
-        pattern=rf"^T\s*(?P<number>\d+)\s*\|\s*(?P<text>[^|]*?)\s*\|(?:.*?(?P<wear>\bWEAR\s+COMP))?(?:.*?\b(?:TOOL\s+)?DIA\.?\s*-\s*(?P<d>{_N}))?"
+        pattern=rf"^T\s*(?P<number>\d+)\s*\|\s*(?P<text>[^|]*?)\s*\|"
+        r"(?:.*?(?P<wear>\bWEAR\s+COMP))?"
+        rf"(?:.*?\b(?:TOOL\s+)?DIA\.?\s*-\s*(?P<d>{_N}))?"
         rf"(?:.*?\bC(?:R|ORNER\s+RAD(?:IUS)?)\.?\s*-\s*(?P<cr>{_N}))?",
         example="T15 | 1/2 BULL ENDMILL .06 RAD | H15 | D15 | TOOL DIA. - .5",
         states={
@@ -190,13 +192,15 @@ TOOL_POSTS: tuple[ToolPost, ...] = (
     ),
     ToolPost(
         post="NX (diameter and corner radius)",
-        pattern=rf"^DIAM(?:ETER)?\s*[:=]\s*(?P<d>{_N})\s*(?:,\s*)?(?:CORNER\s+)?RAD(?:IUS)?\s*[:=]\s*(?P<r>{_N})",
-        example="DIAM: 12.00 RADIUS: 1.50",
+        pattern=rf"^DIAM(?:ETER)?\s*[:=]\s*(?P<d>{_N})\s*(?:,\s*)?(?:CORNER\s+)?RAD(?:IUS)?\s*[:=]\s*(?P<r>{_N})"
+        r"(?:\s*,?\s*(?:FLUTES|TEETH)\s*[:=]\s*(?P<z>\d+))?",
+        example="DIAMETER: 12.00 CORNER RADIUS: 1.50 FLUTES: 3",
         states={
             "kind": "bull",
             "diameter_mm": 12.0,
             "corner_radius_mm": 1.5,
-            "name": "DIAM: 12.00 RADIUS: 1.50",
+            "teeth": 3,
+            "name": "DIAMETER: 12.00 CORNER RADIUS: 1.50 FLUTES: 3",
         },
     ),
     ToolPost(

@@ -41,7 +41,8 @@ _KINDS: tuple[tuple[str, str], ...] = (
     ("bull", r"BULL(?:[ -]?(?:NOSED?|END|MILL|ENDMILL))?|TOR(?:US|IC|IQUE|OID\w*)|TORUSFR\w*|ECKRADIUS\w*"),
     (
         "face mill",
-        r"FACE[ -]?MILL(?:ING)?|SHELL[ -]?MILL|FLY[ -]?CUTTER|PLANFR\w*|FACING|MESSERKOPF|[AÀ] SURFACER|PLANEAR|SPIANARE",
+        r"FACE[ -]?MILL(?:ING)?|SHELL[ -]?MILL|FLY[ -]?CUTTER|PLANFR\w*|FACING|MESSERKOPF|[AÀ] SURFACER"
+        r"|PLANEAR|SPIANARE",
     ),
     ("flat", r"END[ -]?MILL\d*|E/?M|FLAT|SQUARE|ROUTER|(?:UP|DOWN)[ -]?CUT|COMPRESSION|\w+[ -]?FLUTE|MILL|CUTTER"),
     ("flat", rf"SCHAFTFR\w*|\w*{_FRAESER}\w*|FREZA|FREZ|FRAISE|FRESA|CYLIND\w*"),
@@ -68,8 +69,8 @@ _DIAMETERS = tuple(
 #: A bare number right before a word of the tool's kind.
 _BARE = re.compile(rf"(?<![A-Z0-9.#-])(?P<n>{_NUMBER})\s+(?=[A-Z])(?P<rest>.*)")
 _CORNER = re.compile(
-    rf"(?:\b(?:CORNER|TIP|ECK\w*)[ _-]?RAD(?:IUS)?\b\.?|\bCRN?\b\.?|\bRAD(?:IUS)?\b\.?|(?<![A-Z0-9])R)\s*[:=-]?\s*(?P<n>{_NUMBER})"
-    rf"\s*(?P<u>{_UNIT})?|(?P<n2>{_NUMBER})\s*(?P<u2>{_UNIT})?\s*(?:CR|RAD|CORNER)\b"
+    rf"(?:\b(?:CORNER|TIP|ECK\w*)[ _-]?RAD(?:IUS)?\b\.?|\bCRN?\b\.?|\bRAD(?:IUS)?\b\.?|(?<![A-Z0-9])R)\s*[:=-]?"
+    rf"\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?|(?P<n2>{_NUMBER})\s*(?P<u2>{_UNIT})?\s*(?:CR|RAD|CORNER)\b"
 )
 #: Flutes; ``Z4`` before ``4Z``: the number before the blank in ``D16 Z4`` is the diameter.
 _TEETH = tuple(
@@ -115,6 +116,11 @@ class ToolStatement:
     angle_deg: float | None = None
     z_min_mm: float | None = None
     wear: bool | None = None
+
+    def __str__(self) -> str:
+        size = f"D{self.diameter_mm:g}" if self.diameter_mm else ""
+        corner = f"R{self.corner_radius_mm:g}" if self.corner_radius_mm and self.kind != "ball" else ""
+        return " ".join(filter(None, (self.kind, size, corner, f"z{self.teeth}" if self.teeth else "")))
 
     def over(self, other: ToolStatement) -> ToolStatement:
         """These values, and those of another statement where there are none."""
