@@ -186,7 +186,8 @@ def _refuse_foreign(program: Program) -> None:
     if foreign is not None:
         text = program.head.split("\n")[foreign.line - 1]
         place = Place(file=program.file, line=foreign.line, column=foreign.column, text=text)
-        problem = f"a program for {foreign.control}: {foreign.marker!r} is {foreign.reason}"
+        what = foreign.control if foreign.is_file else f"a program for {foreign.control}"
+        problem = f"{what}: {foreign.marker!r} is {foreign.reason}"
         *most, last = DIALECTS
         raise GcodeError(place, "foreign-control", problem, f"a program for {', '.join(most)} or {last}")
 

@@ -17,6 +17,7 @@ MOST_LINES = 400
 MOST_COLUMNS = 256
 #: What the likely marks of one control must add up to; a certain one has it alone.
 PROOF = 2
+_BEGINS = "how such a file begins"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +37,11 @@ class Foreign:
     marker: str
     reason: str
     control: str
+
+    @property
+    def is_file(self) -> bool:
+        """Whether it is a file of another kind, not a program for another control."""
+        return self.reason == _BEGINS
 
 
 class Rule(NamedTuple):
@@ -68,7 +74,7 @@ def _rules(
 
 def _files(kinds: dict[str, str]) -> Iterator[Rule]:
     for kind, pattern in kinds.items():
-        yield Rule(kind, "how such a file begins", re.compile(pattern, re.ASCII), PROOF, True, True)
+        yield Rule(kind, _BEGINS, re.compile(pattern, re.ASCII), PROOF, True, True)
 
 
 RULES: tuple[Rule, ...] = (
@@ -76,6 +82,9 @@ RULES: tuple[Rule, ...] = (
         {
             "a PDF document": r"%PDF-",
             "a ZIP archive": r"PK[\x03\x05]",
+            "a text in UTF-16": r"\xff\xfe|\xfe\xff|[ -~]\x00",
+            "a JSON file": r"\s*\{\s*(?:\"|$)",
+            "a settings file (TOML)": r"\s*#\s+[A-Za-z]|\s*\[[a-z_.]+\]\s*(?:#|$)|\s*(?!o\d)[a-z_]{2,}\s*=\s*[\"'\[{]",
             "an XML or HTML document": r"\s*(?i:<(?:\?xml|!doctype|html)\b)",
             "an STL file": r"solid(?:\s+(?!\()[\w.\-]+)?\s*$",
             "a STEP file": r"ISO-10303-21;",

@@ -56,6 +56,9 @@ FOREIGN = {
     "a DXF drawing": {"  0\nSECTION\n  2\nHEADER": (1, 3)},
     "a PDF document": {"%PDF-1.7\n": (1, 1)},
     "a ZIP archive": {"PK\x03\x04": (1, 1)},
+    "a text in UTF-16": {"\xff\xfeG\x002\x001\x00": (1, 1), "G\x002\x001\x00": (1, 1)},
+    "a JSON file": {'{"data": []}': (1, 1), "{\n": (1, 1)},
+    "a settings file (TOML)": {"# Drafted\n[program]": (1, 1), "[program]\n": (1, 1), 'file = "a.nc"\n': (1, 1)},
     "an XML or HTML document": {"<!DOCTYPE html>\n<html>": (1, 1)},
     "a Gerber drawing": {"%FSLAX46Y46*%": (1, 1)},
 }

@@ -82,9 +82,8 @@ def test_the_job_of_a_replay_can_be_saved_and_its_changes_count(program: Path, r
     arguments = ["replay", "part.nc", "--save-job", "job.toml", "--quiet"]
     assert run(arguments) == 0
     Path("job.toml").write_text(Path("job.toml").read_text().replace("teeth = 4", "teeth = 3"))
-    assert run([*arguments, "--force"]) == 0 and load_job("job.toml").tools[0].teeth == 4
-    Path("job.toml").write_text(Path("job.toml").read_text().replace("teeth = 4", "teeth = 3"))
-    assert run(["replay", "part.nc", "--save-job", "job.toml", "--mcap", "other.mcap"]) == 0
+    assert run([*arguments, "--mcap", "other.mcap", "--force"]) == 0
+    assert load_job("job.toml").tools[0].teeth == 3
     assert replayed.job is not None and replayed.job.tools[0].teeth == 3
 
 

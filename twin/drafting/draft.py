@@ -129,7 +129,8 @@ class _Drafting:
         tool = self.given.tool or 0
         cuts = self.runs.first(tool)
         if not len(cuts.feed.tool):
-            raise ReplayError(f"{self.file}: the program has no feed motion; there is nothing to cut")
+            empty = "the file is empty" if not self.program.size else "the program has no feed motion"
+            raise ReplayError(f"{self.file}: {empty}; there is nothing to cut")
         if 0 in cuts.tools:
             tool = self._first_tool()
             cuts = self.runs.run(tool)
@@ -217,6 +218,11 @@ class _Drafting:
         given = self.given
         shape = CutShape.of(cuts.feed, radii, facing)
         stock = stock_of(shape, stated, given.stock, given.margin_mm, self.notes, self.target.parent)
+        if given.margin_mm and (stated is not None or given.stock is not None):
+            known = "stock is given"
+            if stated is not None and given.stock is None:
+                known = f"program states its stock in line {stated.line}"
+            self.notes.warnings.append(f"a margin of {given.margin_mm:g} mm has no effect: the {known}")
         if stated is None and given.stock is None:
             self.notes.warnings += outside_contours(cuts, tools, stock.low_mm, stock.high_mm)
         if cuts.offsets[0] != "G54":

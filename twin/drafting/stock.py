@@ -29,7 +29,9 @@ _SAME_MM = 1e-3
 _OVER_SHARE = 0.25
 #: A path that is all this far below Z0 has its zero elsewhere than on the stock, mm.
 _DEEPEST_MM = 30.0
-_EXPECTED = "'box X Y Z', 'cylinder D H', either with 'at X Y Z' (centre in X and Y, top in Z), or an STL file"
+_EXPECTED = (
+    "'box X Y Z', 'cylinder D H', either with 'at X Y Z' (centre in X and Y, top in Z), all in mm, or an STL file"
+)
 _N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 _AT = re.compile(rf"\s+at\s+({_N})\s+({_N})\s+({_N})\s*$", re.IGNORECASE)
 _BOX = re.compile(rf"box\s+({_N})\s*[x ]\s*({_N})\s*[x ]\s*({_N})$", re.IGNORECASE)

@@ -12,11 +12,13 @@ from typing import Any
 from twin.archive.container.partial import replacing
 from twin.drafting.draft import JobDraft
 from twin.drafting.tables import DraftTable
-from twin.errors import JobError
+from twin.errors import JobError, TwinError
 from twin.job import job_from_text
 from twin.settings.toml_file import read_toml
 from twin.settings.toml_text import toml_value
 
+#: Keys that a tool may have from a library instead.
+_FROM_ELSEWHERE = frozenset({"name", "origin"})
 _REPLACE = "replace the file with --force"
 
 
@@ -28,7 +30,7 @@ class Written:
         path: the file.
         new: it did not exist, or was replaced.
         added: tables that were added to a file that exists.
-        kept: values of the file that differ from the draft's, and stay.
+        kept: values of the file that differ from the draft's, and stay; keys that it lacks.
     """
 
     path: Path
@@ -47,7 +49,8 @@ def write_draft(draft: JobDraft, *, force: bool = False) -> Written:
         force: replace a file that exists.
 
     Raises:
-        JobError: the file cannot be written, is not a job file, or is the job of another program.
+        JobError: the file is not a job file, or is the job of another program.
+        TwinError: the file cannot be written.
     """
     path = draft.path
     if force or not path.exists():
@@ -65,7 +68,7 @@ def write_draft(draft: JobDraft, *, force: bool = False) -> Written:
 
 
 def _write(path: Path, text: str) -> None:
-    with replacing(path, JobError) as partial:
+    with replacing(path, TwinError) as partial:
         partial.write_text(text, encoding="utf-8")
 
 
@@ -106,16 +109,20 @@ def _by_number(data: Mapping[str, Any]) -> dict[Any, Mapping[str, Any]]:
 
 
 def _kept(draft: JobDraft, data: Mapping[str, Any]) -> Iterator[str]:
-    """Values of the file that differ from the draft's."""
+    """Values of the file that differ from the draft's, and keys that its tables lack."""
     tools = _by_number(data)
     for table in draft.tables:
         own = tools.get(table.get("number")) if table.listed else data.get(table.name)
         if not isinstance(own, Mapping):
             continue
         for entry in table.entries:
-            if entry.value is not None and entry.key in own and own[entry.key] != entry.value:
-                found, drafted = toml_value(own[entry.key]), toml_value(entry.value)
-                yield f"{_title(table)}: {entry.key} = {found} (drafted: {drafted})"
+            if entry.value is None or own.get(entry.key) == entry.value:
+                continue
+            drafted = toml_value(entry.value)
+            if entry.key in own:
+                yield f"{_title(table)}: {entry.key} = {toml_value(own[entry.key])} (drafted: {drafted})"
+            elif entry.key not in _FROM_ELSEWHERE:
+                yield f"{_title(table)} without {entry.key} (drafted: {drafted})"
 
 
 def _title(table: DraftTable) -> str:

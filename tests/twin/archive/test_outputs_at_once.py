@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -162,3 +163,11 @@ def test_a_recording_of_the_same_job_file_is_recognised(tmp_path: Path, job: Pat
         RerunSink(rrd=path, job=other)
     RerunSink(rrd=path, job=job).discard()
     assert names(tmp_path) == ["jobs", "run.rrd"]
+
+
+def test_a_device_is_not_replaced(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.mcap"
+    os.mkfifo(pipe)
+    with pytest.raises(ArchiveError, match=r"pipe\.mcap: is a device or a pipe"):
+        PartialFile(pipe, force=True)
+    assert pipe.is_fifo()

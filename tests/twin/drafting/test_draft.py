@@ -298,6 +298,13 @@ def test_a_comment_that_the_motions_contradict(tmp_path: Path, pairs: list[tuple
     draft.job()
 
 
+def test_a_margin_around_a_stock_that_is_known(tmp_path: Path) -> None:
+    (warning,) = drafted(tmp_path, margin_mm=5.0, stock="box 90 90 9").warnings
+    assert warning == "a margin of 5 mm has no effect: the stock is given"
+    (warning,) = drafted(tmp_path, changed(("(SLOT)", "(STOCK 80 X 30 X 10)")), margin_mm=5.0).warnings
+    assert warning.endswith("the program states its stock in line 2")
+
+
 def test_a_sound_program_has_no_warnings(tmp_path: Path) -> None:
     rows = "".join(f"X{40 * (k % 2 == 0)}. F640.\nY{4 * k + 4}.\n" for k in range(6))
     assert not drafted(tmp_path, changed(("X40. F640.", rows))).warnings

@@ -11,7 +11,7 @@ from support.nc_programs import SLOT, changed, written
 
 from twin.drafting.draft import draft_job
 from twin.drafting.update import Written, write_draft
-from twin.errors import JobError
+from twin.errors import JobError, TwinError
 from twin.job import load_job
 
 
@@ -35,6 +35,14 @@ def test_changes_by_hand_stay_and_are_reported(tmp_path: Path) -> None:
     again = write(tmp_path)
     assert path.read_text() == own
     assert again.kept == ("T3: teeth = 3 (drafted: 4)",)
+
+
+def test_a_material_that_the_tools_of_the_file_lack(tmp_path: Path) -> None:
+    """With a tool that has no forces, each cutting tool has its own coefficients; a file of before has none."""
+    text = changed(("M30\n", "T4 M6 (D6 DRILL)\nS900 M3\nG0 X0 Y0 Z2.\nG1 Z-1. F90.\nM30\n"))
+    write(tmp_path, text)
+    again = write(tmp_path, text, material="Al7075-T6")
+    assert again.kept == ('T3 without cutting (drafted: { material = "Al7075-T6" })',)
 
 
 def test_tools_and_tables_that_the_file_lacks_are_added(tmp_path: Path) -> None:
@@ -69,3 +77,10 @@ def test_other_files_are_not_touched(tmp_path: Path, text: str, message: str) ->
     with pytest.raises(JobError, match=message):
         write(tmp_path)
     assert (tmp_path / "job.toml").read_text() == text
+
+
+def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    draft = draft_job(written(tmp_path, SLOT), path=tmp_path / "file" / "job.toml")
+    with pytest.raises(TwinError, match=r"job\.toml: cannot be written"):
+        write_draft(draft)

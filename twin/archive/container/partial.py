@@ -93,7 +93,8 @@ class PartialFile:
         refuse: the error for a file that cannot be written.
 
     Raises:
-        ArchiveError: a file exists and must not be replaced, another program is writing it, or none can be created.
+        ArchiveError: a file exists and must not be replaced, the path is that of a device, another program is writing
+            it, or none can be created.
     """
 
     def __init__(
@@ -112,6 +113,8 @@ class PartialFile:
         self._refuse = refuse
         self._size = 0
         self._file: int | None = None
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            raise refuse(f"{path}: is a device or a pipe, which a finished file cannot replace; expected a file name")
         if self._is_taken():
             raise refuse(f"{path}: {_EXISTS}")
         try:

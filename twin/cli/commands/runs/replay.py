@@ -41,7 +41,7 @@ def replay(
         typer.Option(
             "--save-job",
             metavar="FILE",
-            help="Write the job of an NC program to a file, to be changed and replayed.",
+            help="Write the job of an NC program to a file, to edit and replay; an existing one keeps its values.",
             show_default=False,
             rich_help_panel="Job of an NC program",
         ),
@@ -118,7 +118,7 @@ def replay(
     own = {"dialect": dialect and dialect.value, "tool": tool, "m_codes": tuple(m_code) if m_code else None}
     options = {"material": material, **own}
     given = {key: value for key, value in options.items() if value is not None}
-    source = source_of(file, {**drafting, **given}, save_job, force=force, quiet=quiet or as_json)
+    source = source_of(file, {**drafting, **given}, save_job, quiet=quiet or as_json)
     job = source.job.without_forces() if no_forces else source.job
     job = job.with_simulation(store=engine.value) if engine is not None else job
     mcap, rrd = mcap or job.output.mcap, rrd or job.output.rrd

@@ -38,20 +38,19 @@ class Source:
     assumed: dict[str, Any] = field(default_factory=dict)
 
 
-def source_of(file: Path, given: Mapping[str, Any], save_job: Path | None, *, force: bool, quiet: bool) -> Source:
+def source_of(file: Path, given: Mapping[str, Any], save_job: Path | None, *, quiet: bool) -> Source:
     """The job of a job file or an NC program, with the options in place of its values.
 
     Args:
         given: values of `DraftSettings` by key.
-        save_job: where the job of an NC program is to be written.
-        force: replace that file.
+        save_job: where the job of an NC program is to be written; a file that exists keeps its values.
         quiet: print warnings only.
 
     Raises:
         TwinError, GcodeError: a file or option that cannot be used.
     """
     if is_nc_program(file):
-        return _drafted(file, given, save_job, force=force, quiet=quiet)
+        return _drafted(file, given, save_job, quiet=quiet)
     wrong = [option for key, option in _DRAFT_ONLY.items() if key in given]
     wrong += ["--save-job"] if save_job is not None else []
     if wrong:
@@ -81,13 +80,13 @@ def _with_material(job: Job, name: str, *, quiet: bool) -> Job:
     return changed
 
 
-def _drafted(file: Path, given: Mapping[str, Any], save_job: Path | None, *, force: bool, quiet: bool) -> Source:
+def _drafted(file: Path, given: Mapping[str, Any], save_job: Path | None, *, quiet: bool) -> Source:
     settings = settings_from(DraftSettings, given, {}, "twin replay", "twin replay")
     draft = draft_job(file, settings, path=save_job)
     job = draft.job()
     written = None
     if save_job is not None:
-        written = write_draft(draft, force=force)
+        written = write_draft(draft)
         job = load_job(save_job)
     elif draft.path.is_file():
         warn(f"{draft.path} exists and is not used; replay it with: twin replay {draft.path}")
