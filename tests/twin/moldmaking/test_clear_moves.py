@@ -164,12 +164,23 @@ def test_a_rapid_down_next_to_a_wall_of_the_stock_ends_above_it() -> None:
     assert np.all(plunge.end_mm == (6.0, 0.03, 1.0))
 
 
-def test_a_rise_from_below_the_allowance_begins_at_feed() -> None:
-    """A cut that is 3 um too close to a wall of 6 mm."""
-    cut = Move(kind=MoveKind.CUT, points_mm=np.array([[-2.247, -5.0, 1.0], [-2.247, 0.0, 1.0]]), feed_mm_min=600.0)
-    path = ToolPath(moves=(cut, *rapids(np.array([cut.end_mm, (-2.247, 0.0, 15.0)]))), tool=TOOL)
-    part = part_obstacle(pin(), TOOL, 0.2)
+def along_the_pin(x: float) -> ToolPath:
+    """A cut along a side of the pin, with an allowance of 0.2 mm at X-2.25, and a rise from there."""
+    cut = Move(kind=MoveKind.CUT, points_mm=np.array([[x, -5.0, 1.0], [x, 0.0, 1.0]]), feed_mm_min=600.0)
+    return ToolPath(moves=(cut, *rapids(np.array([cut.end_mm, (x, 0.0, 15.0)]))), tool=TOOL)
+
+
+@pytest.mark.parametrize("x", [-2.247, -2.25, -2.2503])
+def test_a_rise_from_below_the_allowance_or_along_a_wall_begins_at_feed(x: float) -> None:
+    """3 um too close to a wall of 6 mm; or so close that the rounding of the program may take the tool into it."""
+    path, part = along_the_pin(x), part_obstacle(pin(), TOOL, 0.2)
+    cut = path.moves[0]
     first, retract, rise = with_clear_moves(path, OPTIONS, part).moves
     assert first is cut and (retract.kind, retract.feed_mm_min) == (MoveKind.RETRACT, 1000.0)
     assert rise.rapid and rise.end_mm[2] == 15.0 and 3.5 < rise.start_mm[2] < 6.2
     assert deepest_mm(with_clear_moves(path, OPTIONS, part), pin(), 0.2, MoveKind.RAPID) <= ROUNDING
+
+
+def test_a_rise_away_from_a_wall_is_left_as_is() -> None:
+    path = along_the_pin(-2.252)
+    assert with_clear_moves(path, OPTIONS, part_obstacle(pin(), TOOL, 0.2)) is path

@@ -33,6 +33,8 @@ _COARSE_MM = 0.5
 _FINE_MM = 0.02
 #: A tip this much too low still counts as clear, mm: rounding.
 _ROUNDING_MM = 1e-6
+#: Rounded coordinates of a program are off by no more than this, mm; a steep wall rises this many times as much.
+_PRINTED_MM, _STEEP = 7e-4, 10.0
 #: Links that are raised go this much above the height at which the tool touches, mm.
 _LIFT_MM = 0.002
 #: Chord error of arcs, mm.
@@ -153,6 +155,8 @@ def with_clear_moves(
 def _low_starts(runs: Sequence[_Run], numbers: Sequence[int], part: Obstacle) -> dict[int, float]:
     """Runs of rapids that rise from below the lowest tip, as cuts may lie in the allowance by their tolerance.
 
+    A rise along a steep wall that the tool touches counts too: the coordinates of the program are rounded.
+
     Returns:
         Lowest tips by the number of the run.
     """
@@ -161,6 +165,10 @@ def _low_starts(runs: Sequence[_Run], numbers: Sequence[int], part: Obstacle) ->
         return {}
     starts = np.array([runs[k].moves[0].start_mm for k in rising])
     lowest = part.exact(starts[:, :2])
+    angles = np.arange(8) * np.pi / 4.0
+    around = starts[:, None, :2] + _PRINTED_MM * np.column_stack((np.cos(angles), np.sin(angles)))
+    walls = part.exact(around.reshape(-1, 2)).reshape(-1, len(angles)).max(axis=1)
+    lowest = np.where(walls > starts[:, 2] + _STEEP * _PRINTED_MM, walls, lowest)
     below = starts[:, 2] < lowest - _ROUNDING_MM
     return {k: float(z) for k, z, low in zip(rising, lowest, below, strict=True) if low}
 
