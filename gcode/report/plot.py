@@ -44,6 +44,8 @@ _PROJECTIONS: Mapping[str, _Array] = MappingProxyType(
 _RAPID = "#9aa0a6"
 _INK = "#3c4043"
 _EDGE = "#c4c7cc"
+#: Ticks closer to the corner of the axes than this share of an axis.
+_CORNER_SHARE = 0.04
 #: Directions in the iso picture in which the ticks of the box's X, Y and Z edges stand.
 _OUTWARDS = np.array(((0.6, -1.0), (-0.6, -1.0), (-1.2, 0.0)))
 _TOOLS = ("#1f77b4", "#d95f02", "#2a9d5c", "#c2378f", "#7a5bc4", "#a6761d", "#16a3b8", "#c23b31", "#6b7a1f", "#5b6770")
@@ -252,6 +254,7 @@ def _draw_box(axes: Axes, low: _Array, high: _Array, view: View) -> None:
     from matplotlib.ticker import MaxNLocator
 
     largest = float((high - low).max())
+    at_corner = False
     for axis, name in enumerate("XYZ"):
         far = low.copy()
         far[axis] = high[axis]
@@ -264,9 +267,12 @@ def _draw_box(axes: Axes, low: _Array, high: _Array, view: View) -> None:
         for value in MaxNLocator(count).tick_values(low[axis], high[axis]):
             if low[axis] - 1e-9 <= value <= high[axis] + 1e-9:
                 share = (value - low[axis]) / (far[axis] - low[axis])
+                if share < _CORNER_SHARE and at_corner:
+                    continue  # it would be written over that of another axis
+                at_corner = at_corner or share < _CORNER_SHARE
                 _draw_tick(axes, ends[0] + share * (ends[1] - ends[0]), outwards, f"{value:g}", 7)
         along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-        _draw_tick(axes, ends[1], np.array((2.0, 1.4)) * along, f"{name}, mm", 9, mark=False)
+        _draw_tick(axes, ends[1], np.array((3.4, 2.6)) * along, f"{name}, mm", 9, mark=False)
 
 
 def _draw_tick(axes: Axes, at: _Array, outwards: _Array, text: str, size: int, *, mark: bool = True) -> None:

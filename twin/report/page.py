@@ -21,6 +21,7 @@ from twin.run.watch import COLLISION_TEXTS
 SUFFIX = ".html"
 _MOST_LINES = 15
 _MOST_GROUPS = 25
+_NUMBER = re.compile(r"^number\s*=\s*(\d+)")
 #: A value of a job file with the comment that it was assumed.
 _ASSUMED = re.compile(r"^(?P<value>[^#]*?)\s*#\s*assumed:?\s*(?P<reason>.*)$")
 _TABLE = re.compile(r"^\[+(?P<name>[^\[\]]+)\]+\s*(?:#.*)?$")
@@ -101,12 +102,19 @@ def assumed_values(header: RunHeader) -> Iterator[tuple[str, str]]:
         if not attachment.name.lower().endswith(".toml"):
             continue
         table = ""
-        for line in attachment.data.decode("utf-8", "replace").splitlines():
-            heading = _TABLE.match(line.strip())
+        above: list[str] = []
+        for line in map(str.strip, attachment.data.decode("utf-8", "replace").splitlines()):
+            heading, number = _TABLE.match(line), _NUMBER.match(line)
             if heading:
                 table = heading["name"].strip()
-            found = _ASSUMED.match(line.strip())
-            if found:
+                yield from ((table, reason) for reason in above)
+                above = []
+            elif number and table == "tools":
+                table = f"T{number[1]}"
+            found = _ASSUMED.match(line)
+            if found and not found["value"].strip():
+                above.append(found["reason"].strip())  # of the table that begins below
+            elif found:
                 yield f"{table}: {found['value'].strip()}".strip(": "), found["reason"].strip()
 
 
@@ -115,7 +123,7 @@ def _subtitle(contents: ReportContents) -> str:
     low, high = header.stock_bounds_mm.tolist()
     stock = " × ".join(f"{b - a:.6g}" for a, b in zip(low, high, strict=True))
     material = header.parameters.get("cutting.material")
-    parts = [f"stock {stock} mm", plural(len(header.tools), "tool"), f"slice pitch {max(header.slice_pitch_mm):g} mm"]
+    parts = [f"stock {stock} mm", plural(len(header.tools), "tool"), f"slice pitch {max(header.slice_pitch_mm):.3g} mm"]
     if material:
         parts.insert(0, material)
     return " · ".join([*parts, f"twin {header.twin_version}"])

@@ -138,7 +138,14 @@ def test_the_page_says_what_happened(page: str) -> None:
 
 
 def test_assumptions_are_read_from_the_attached_job(synthetic: twin.Run) -> None:
-    assert list(assumed_values(synthetic.header)) == [("tools: helix_deg = 30.0", "the program does not state it")]
+    assert list(assumed_values(synthetic.header)) == [("T1: helix_deg = 30.0", "the program does not state it")]
+
+
+def test_assumptions_about_a_table_and_a_tool(synthetic: twin.Run) -> None:
+    text = "[machine]\nx = 1\n# assumed: around\n[stock]\ny = 2\n[[tools]]\nnumber = 7\nteeth = 2  # assumed: few\n"
+    job = Attachment(name="job.toml", media_type="application/toml", data=text.encode())
+    header = replace(synthetic.header, attachments=(job,))
+    assert list(assumed_values(header)) == [("stock", "around"), ("T7: teeth = 2", "few")]
 
 
 def test_text_of_the_program_is_harmless(synthetic: twin.Run, monkeypatch: pytest.MonkeyPatch) -> None:
