@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from gcode.cli.number_format import clock, grouped, plural
 
-__all__ = ["clock", "column", "digits", "grouped", "plural", "size", "volume"]
+__all__ = ["clock", "column", "digits", "duration", "grouped", "plural", "size", "volume"]
 
 
 def digits(value: float) -> str:
@@ -16,6 +16,14 @@ def digits(value: float) -> str:
         if size < limit:
             return f"{value:.{decimals}f}"
     return grouped(value)
+
+
+def duration(seconds: float) -> str:
+    """A rough time in words: ``8 s``, ``12 min``, ``1.5 h``."""
+    for unit, name in ((1.0, "s"), (60.0, "min")):
+        if seconds < 99.5 * unit:
+            return f"{seconds / unit:.0f} {name}"
+    return f"{seconds / 3600.0:.1f} h"
 
 
 def column(values: Iterable[float]) -> list[str]:

@@ -122,7 +122,7 @@ def _usual(program: Program, names: list[str]) -> tuple[str, str]:
         named = re.search(rf"[(;][^\n]*(?<![^\W_])({_NAMES[name]})(?![^\W_])", program.head, re.IGNORECASE)
         if named is not None:
             return name, f"a comment names {named[1]}"
-    return names[0], f"nothing in it speaks against {names[0]}"
+    return names[0], f"nothing in it contradicts {names[0]}"
 
 
 def _weight(found: tuple[Fault, ...]) -> int:

@@ -214,7 +214,19 @@ def test_lines_without_a_terminal_have_task_share_pace_and_time_left() -> None:
     assert line.text() == "preparing: slicing the stock (0:04.0)"
     line.start(60.0)
     line.at(30.0, 12)
-    assert line.text() == "replaying: 50 %, 0:30.0 of 1:00.0, 15.0x real time, line 12, about 0:02.0 left"
+    assert line.text() == "replaying: 50 %, 0:30.0 of 1:00.0, 15.0x real time, line 12, about 2 s left"
+
+
+def test_the_time_left_after_compiling_is_that_of_the_last_lines() -> None:
+    clock = iter([100.0, 100.0, 110.0, 120.0, 130.0])
+    line = LogProgress(lambda: next(clock))
+    line.start(60.0)
+    line._beat.compiled = True
+    line.at(6.0, 12)
+    assert line.text().endswith("0.6x real time, line 12, about 90 s left")
+    assert line.text().endswith("line 12")  # it stands still: code is being compiled
+    line.at(36.0, 15)
+    assert line.text().endswith("about 8 s left")
 
 
 def test_long_work_without_a_terminal_prints_lines(capsys: pytest.CaptureFixture[str]) -> None:

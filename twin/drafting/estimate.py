@@ -17,7 +17,7 @@ from twin.drafting.cuts import Cuts
 from twin.drafting.fineness import Fineness
 from twin.drafting.stock import StockBox
 from twin.drafting.tools import DraftTool
-from twin.number_format import clock
+from twin.number_format import clock, duration
 
 #: Rate of rapids of a job that does not state one, mm/min.
 _RAPID_MM_MIN = 48_000.0
@@ -65,7 +65,7 @@ class Estimate:
     def __str__(self) -> str:
         return (
             f"{clock(self.machine_time_s)} of machine time, {self.samples:,} force samples; about "
-            f"{clock(self.computing_s)} of computing, {_bytes(self.memory_bytes)} of memory, archive "
+            f"{duration(self.computing_s)} of computing, {_bytes(self.memory_bytes)} of memory, archive "
             f"{_bytes(self.archive_bytes)}, recording (--rrd) {_bytes(self.recording_bytes)}"
         )
 

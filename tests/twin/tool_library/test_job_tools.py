@@ -18,6 +18,7 @@ from twin.job import Job, job_from_dict, job_schema
 from twin.record import RunHeader
 from twin.run.watch import Watch
 from twin.simulation.header import run_header
+from twin.simulation.program import Plan
 
 
 def job(tmp_path: Path, *tools: dict[str, Any]) -> Job:
@@ -101,7 +102,7 @@ def test_the_schema_takes_a_tool_from_a_library_and_not_one_without_sizes() -> N
 def test_the_header_has_the_sizes_their_origin_and_a_caution(tmp_path: Path) -> None:
     loaded = job(tmp_path, {"from": "shop.json", "number": 3})
     stock = SimpleNamespace(pitch_mm=np.ones(3), low_mm=np.zeros(3), high_mm=np.ones(3))
-    header: RunHeader = run_header(loaded, stock, [], 1.0)  # type: ignore[arg-type]
+    header: RunHeader = run_header(loaded, stock, [], Plan(1.0, None))  # type: ignore[arg-type]
     assert header.parameters["tools[0].from"] == "shop.json"
     assert header.parameters["tools[0].diameter_mm"] == "6.0"
     assert header.parameters["tools[0].origin"].endswith('data[0], T3 "6 mm ball"')

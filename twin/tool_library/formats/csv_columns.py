@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import NamedTuple
 
 from twin.tool_library.quantities import LibraryUnit
@@ -14,15 +15,18 @@ COLUMNS = (
 )
 #: Other names of columns, without unit: `assemble`'s names of sizes, and the columns that are not sizes.
 _NAMES = {
-    "number": ("number", "t", "tool", "no", "nr", "tool_number", "number_t", "#"),
-    "name": ("name", "description", "tool_description", "tool_name", "comment"),
-    "kind": ("kind", "type", "shape", "tool_type"),
-    "teeth": ("teeth", "flutes", "z", "nof", "flute_count", "number_of_flutes", "tool_numberofflutes"),
-    "diameter": ("diameter", "d", "dia", "dc", "tool_diameter"),
-    "corner": ("corner_radius", "corner", "radius", "r", "re", "cr", "tool_cornerradius"),
+    "number": ("number", "t", "tool", "no", "nr", "tool_number", "number_t", "nummer", "numero", "#"),
+    "name": ("name", "description", "tool_description", "tool_name", "comment", "bezeichnung", "nom"),
+    "kind": ("kind", "type", "shape", "tool_type", "typ"),
+    "teeth": (
+        *("teeth", "flutes", "z", "nof", "flute_count", "number_of_flutes", "tool_numberofflutes"),
+        *("zahne", "zaehne", "dents"),
+    ),
+    "diameter": ("diameter", "d", "dia", "dc", "tool_diameter", "durchmesser", "diametre"),
+    "corner": ("corner_radius", "corner", "radius", "r", "re", "cr", "tool_cornerradius", "eckenradius", "rayon"),
     "taper": ("taper", "taper_angle", "half_angle", "ta", "tool_taperangle"),
     "helix": ("helix", "helix_angle"),
-    "flutes": ("flute_length", "cutting_length", "lcf", "loc", "length_of_cut", "tool_flutelength"),
+    "flutes": ("flute_length", "cutting_length", "lcf", "loc", "length_of_cut", "tool_flutelength", "schneidenlange"),
     "shoulder": ("shoulder_length", "tool_shoulderlength"),
     "neck": ("neck_diameter", "shoulder_diameter", "tool_shoulderdiameter"),
     "stickout": ("stickout", "body_length", "lb", "tool_bodylength"),
@@ -60,9 +64,14 @@ class Column(NamedTuple):
     heading: str
 
 
+def _unaccented(text: str) -> str:
+    """A text with plain letters in place of those with accents."""
+    return "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
+
+
 def column_of(heading: str) -> Column | None:
     """The column that a heading means: ``diameter_mm``, ``Diameter [in]``, ``Diameter (tool_diameter)``."""
-    text = heading.strip().lower()
+    text = _unaccented(heading.strip().lower())
     if found := re.search(r"\((\w*_\w+)\)$", text):
         name = _CANONICAL.get(found[1])
         return None if name is None else Column(name, None, heading.strip())

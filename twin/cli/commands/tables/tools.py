@@ -35,8 +35,8 @@ def tools(
 ) -> None:
     """List, check and convert tool libraries: Fusion 360, FreeCAD, LinuxCNC, Vectric, CAMotics, DIN 4000, CSV.
 
-    A job uses a tool with ``from = "FILE"`` and its number or name in [[tools]]. Ends with exit code 1 if a library has
-    values that cannot be right; these are named and left out.
+    A job uses a tool of a library by from = "FILE" and the tool's number or name in a table of its tools. Ends with
+    exit code 1 if a library has values that cannot be right; these are listed and not used.
     """
     from twin.cli.console import print_json, results, warn
     from twin.cli.show.tool_tables import print_tools, print_written, tools_object
