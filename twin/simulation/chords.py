@@ -78,18 +78,16 @@ def chain_groups(pieces: Iterator[Piece], tool: ToolSetup, material: Material) -
 def _in_one_direction(chords: Sequence[Piece]) -> int:
     """How many of the first chords go on in one direction along each axis and turn by no more than `_TURN_RAD`."""
     along, lengths = _along(chords)
-    sense = np.zeros(3)
-    for count, one in enumerate(np.sign(along)):
-        if np.any(one * sense < 0.0) or along[count] @ along[0] < math.cos(_TURN_RAD) * lengths[count] * lengths[0]:
-            return count
-        sense = np.where(sense == 0.0, one, sense)
-    return len(chords)
+    back = (np.minimum.accumulate(along, axis=0) < 0.0) & (np.maximum.accumulate(along, axis=0) > 0.0)
+    turned = along @ along[0] < math.cos(_TURN_RAD) * lengths * lengths[0]
+    other = np.flatnonzero(back.any(axis=1) | turned)
+    return int(other[0]) if len(other) else len(chords)
 
 
 def _along(chords: Sequence[Piece]) -> tuple[FloatArray, FloatArray]:
     """From the start to the end of each chord, shape (n, 3), and the lengths, shape (n,)."""
-    along = np.array([end - start for start, end, _ in chords])
-    return along, np.array([float(np.linalg.norm(one)) for one in along])
+    along = np.array([end for _, end, _ in chords]) - np.array([start for start, _, _ in chords])
+    return along, np.linalg.norm(along, axis=1)
 
 
 def chord_steps(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup) -> Iterator[Step]:
@@ -100,7 +98,7 @@ def chord_steps(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Set
     recorder = setup.recorder
     turned, t_s = [], recorder.t_s
     for _, _, duration_s in chords:
-        turned.append(recorder.clock.advance(t_s, duration_s, move.spindle_rpm))
+        turned.append(recorder.turned(t_s, duration_s, move))
         t_s += duration_s
     if tool.forces is None:
         solved = _solved_where_it_changes(move, chords, tool, setup)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import TypeAlias
 
 import numpy as np
@@ -13,6 +12,8 @@ from twin.arrays import FloatArray
 #: Times and signed spindle angles of samples, both of shape (n,).
 Turned: TypeAlias = tuple[FloatArray, FloatArray]
 
+#: No samples.
+UNSAMPLED: Turned = (np.zeros(0), np.zeros(0))
 #: A sample this close before a step's end, in angle steps, belongs to the next step.
 _EDGE = 1e-9
 
@@ -46,28 +47,22 @@ class SpindleClock:
             Times and signed spindle angles of the samples in [t_s, t_s + duration_s), both of shape (n,).
         """
         if spindle_rpm == 0.0 or duration_s <= 0.0:
-            return np.zeros(0), np.zeros(0)
+            return UNSAMPLED
         sense = math.copysign(1.0, spindle_rpm)
         rate = abs(spindle_rpm) / 60.0 * self._rows
-        before = self._turned_steps
-        after = before + rate * duration_s
+        before, angle_rad = self._turned_steps, self._angle_rad
+        self.turn(duration_s, spindle_rpm)
+        after = self._turned_steps
         first, end = math.ceil(before - _EDGE), math.ceil(after - _EDGE)
         few = ends_only and end - first > 2
         numbers = np.array([first, end - 1.0]) if few else np.arange(first, end, dtype=np.float64)
         times = t_s + np.maximum(0.0, (numbers - before) / rate)
-        angles = self._angle_rad + sense * (numbers - before) * self._step_rad
-        self._turned_steps = after
-        self._angle_rad += sense * (after - before) * self._step_rad
-        return times, angles
+        return times, angle_rad + sense * (numbers - before) * self._step_rad
 
-    def turns(self, t_s: float, step_s: float, spindle_rpm: float) -> Iterator[Turned]:
-        """The samples of equal steps, one after another without end; the clock is at the last step taken.
-
-        Args:
-            t_s: machine time at the beginning of the first step.
-            step_s: duration of each.
-            spindle_rpm: signed speed.
-        """
-        while True:
-            yield self.advance(t_s, step_s, spindle_rpm)
-            t_s += step_s
+    def turn(self, duration_s: float, spindle_rpm: float) -> None:
+        """Turn for a while without taking samples."""
+        if spindle_rpm == 0.0 or duration_s <= 0.0:
+            return
+        before = self._turned_steps
+        self._turned_steps = before + abs(spindle_rpm) / 60.0 * self._rows * duration_s
+        self._angle_rad += math.copysign(1.0, spindle_rpm) * (self._turned_steps - before) * self._step_rad

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Iterator, Sequence
 from itertools import groupby, pairwise
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -33,12 +32,24 @@ SAME_LINE_MM = 1e-9
 _BEHIND_CHORDS = 1.1
 
 
+#: Chords that retrace earlier ones wait longer, for later ones to swallow them: this many at most, and until they are
+#: deeper than the slices are cut by this many pitches.
+RETRACED_TOGETHER, RETRACED_PITCHES = 512, 1.0
+#: Chords are the same in plan when they agree to this many decimals, mm.
+_DECIMALS = 9
+#: Most plans of chords that are remembered.
+_MOST_PLANS = 100_000
+
+#: Start and end of a chord in plan, and its tool.
+_Plan: TypeAlias = tuple[float, float, float, float, int]
+
+
 class _Waiting(NamedTuple):
-    """A sweep that waits, the number of its tool, and whether it may be subtracted together with others."""
+    """A sweep that waits, the number of its tool, and its plan if it may be subtracted together with others."""
 
     sweep: Sweep
     tool: int
-    chord: bool
+    plan: _Plan | None = None
 
 
 class Touch(NamedTuple):
@@ -75,11 +86,14 @@ class Material:
         self.workpiece = workpiece
         self.contact_mm3 = tolerance.contact_mm3
         self._removal = Removal(workpiece, tolerance.chord_mm, threads)
-        self._waiting: deque[_Waiting] = deque()
+        self._waiting: dict[int, _Waiting] = {}
+        self._of_plan: dict[_Plan, int] = {}
+        self._number = 0
         self._window_mm = PENDING_PITCHES * float(np.max(workpiece.pitch_mm))
         self._behind_mm = _BEHIND_CHORDS * tolerance.chord_mm
         self.removed_mm3: dict[int, float] = {}
         self._last_tool = 0
+        self._cut_to_mm: dict[_Plan, float] = {}
 
     def pending(self, tool: int, start_mm: FloatArray, feed: FloatArray) -> SweptVolume:
         """Sweeps that are not yet subtracted from the slices and can have reached the front of a moving tool.
@@ -92,7 +106,9 @@ class Material:
             start_mm: tool tip at the start of a straight motion, shape (3,).
             feed: unit vector along it, shape (3,).
         """
-        return self._volume([w for w in self._waiting if w.tool != tool or not _behind(w.sweep, start_mm, feed)], tool)
+        return self._volume(
+            [w for w in self._waiting.values() if w.tool != tool or not _behind(w.sweep, start_mm, feed)], tool
+        )
 
     def pending_chords(self, tool: ToolSetup, corners_mm: FloatArray) -> SweptVolume:
         """Sweeps that are not yet subtracted from the slices, and after them those of chords that come next.
@@ -101,8 +117,8 @@ class Material:
             corners_mm: shape (n + 1, 3), the ends of n chords, of which the last needs no sweep; without any, only the
                 sweeps that wait.
         """
-        chords = [_Waiting(Sweep(tool.cutter, a, b), tool.number, False) for a, b in pairwise(corners_mm[:-1])]
-        return self._volume([*self._waiting, *chords], tool.number)
+        chords = [_Waiting(Sweep(tool.cutter, a, b), tool.number) for a, b in pairwise(corners_mm[:-1])]
+        return self._volume([*self._waiting.values(), *chords], tool.number)
 
     def _volume(self, waiting: Sequence[_Waiting], tool: int) -> SweptVolume:
         behind_mm = [self._behind_mm if w.tool == tool else math.inf for w in waiting]
@@ -119,7 +135,7 @@ class Material:
         Args:
             lengths_mm: of the next motions.
         """
-        waiting = [w.sweep.length_mm for w in self._waiting]
+        waiting = [w.sweep.length_mm for w in self._waiting.values()]
         for count, length_mm in enumerate(lengths_mm, start=1):
             waiting.append(length_mm)
             if self._due(waiting):
@@ -129,6 +145,15 @@ class Material:
     def near(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> bool:
         """Whether the box of a motion of any of a tool's bodies meets the stock's box."""
         return any(self._meets(body, start_mm, end_mm) for body in (tool.cutter, *(b for _, b in tool.rigid)))
+
+    def rigid_near(self, tool: ToolSetup, corners_mm: FloatArray) -> bool:
+        """Whether the box of a path of shank or holder meets the stock's box.
+
+        Args:
+            corners_mm: shape (n, 3), corners of the path of the tool tip.
+        """
+        low, high = corners_mm.min(axis=0), corners_mm.max(axis=0)
+        return any(self._meets(body, low, high) for _, body in tool.rigid)
 
     def _meets(self, body: Body, start_mm: FloatArray, end_mm: FloatArray) -> bool:
         low, high = Sweep(body, start_mm, end_mm).bounds_mm
@@ -152,13 +177,13 @@ class Material:
             The touch, if it is forbidden and material was met.
         """
         if forbidden is None:
-            self._waiting.append(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number, False))
-            self._subtract(self._due([w.sweep.length_mm for w in self._waiting]))
+            self._wait(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number))
+            self._subtract(self._due([w.sweep.length_mm for w in self._waiting.values()]))
             return
         self.flush()
         met = self._removal.cut(Sweep(tool.guard, start_mm, end_mm), apply=False)
         if met > 0.0:
-            self._waiting.append(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number, False))
+            self._wait(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number))
             yield Touch(forbidden, met, self._subtract(1))
 
     def touches(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> Iterator[Touch]:
@@ -174,17 +199,43 @@ class Material:
                     yield Touch(kind, volume, volume)
 
     def add_chord(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> None:
-        """Move the cutting part along a chord; it waits until `settle` subtracts it together with those before it."""
-        self._waiting.append(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number, True))
+        """Move the cutting part along a chord; it waits until `settle` subtracts it together with those before it.
+
+        A chord that waits is forgotten when this one swallows it: the same in plan and nowhere below it. Tools become
+        no thinner upwards, so this one removes all that the other does, as long as its cutting part reaches above the
+        stock.
+        """
+        plan = _plan(start_mm, end_mm, tool.number)
+        sweep = Sweep(tool.cutter, start_mm, end_mm)
+        earlier = self._waiting.get(self._of_plan.get(plan, -1))
+        if earlier is not None and self._swallows(sweep, earlier.sweep):
+            del self._waiting[self._of_plan[plan]]
+        self._of_plan[plan] = self._wait(_Waiting(sweep, tool.number, plan))
 
     def settle(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> None:
-        """Subtract everything that waits, if that is much.
+        """Subtract everything that waits, if that is much and will not soon be swallowed.
 
         Args:
             tool, start_mm, end_mm: the chord that will be added next.
         """
-        if len(self._waiting) >= CHORDS_TOGETHER:
+        if len(self._waiting) < CHORDS_TOGETHER:
+            return
+        cut_mm = self._cut_to_mm.get(_plan(start_mm, end_mm, tool.number), math.inf)
+        deep_mm = RETRACED_PITCHES * float(self.workpiece.pitch_mm[2])
+        if len(self._waiting) > RETRACED_TOGETHER or cut_mm - float(end_mm[2]) > deep_mm:
             self._subtract(len(self._waiting), Sweep(tool.cutter, start_mm, end_mm))
+
+    def _wait(self, sweep: _Waiting) -> int:
+        """Let a sweep wait; returns its number."""
+        self._number += 1
+        self._waiting[self._number] = sweep
+        return self._number
+
+    def _swallows(self, later: Sweep, earlier: Sweep) -> bool:
+        """Whether a sweep of the same body and the same plan contains an earlier one, in the stock."""
+        deep = later.start_mm[2] <= earlier.start_mm[2] and later.end_mm[2] <= earlier.end_mm[2]
+        lowest = min(float(later.start_mm[2]), float(later.end_mm[2]))
+        return bool(deep) and lowest + later.body.top_mm >= float(self.workpiece.high_mm[2])
 
     def _due(self, lengths_mm: Sequence[float]) -> int:
         """How many sweeps, of those that wait, are to be subtracted now; 0 while they are too few.
@@ -203,7 +254,7 @@ class Material:
         """Subtract everything that waits."""
         left = self._removal.left
         if left is not None and not self._waiting:
-            self._waiting.append(_Waiting(left, self._last_tool, False))
+            self._wait(_Waiting(left, self._last_tool))
         self._subtract(len(self._waiting))
 
     def volume_inside(self, tool: ToolSetup, tip_mm: FloatArray) -> float:
@@ -217,16 +268,20 @@ class Material:
         Args:
             after: the sweep that comes next, where nothing else waits.
         """
-        taken = [self._waiting.popleft() for _ in range(count)]
+        taken = [self._waiting.pop(number) for number in list(self._waiting)[:count]]
         if not taken:
             return 0.0
         sweeps: list[Sweep | Chain] = []
         tools: list[int] = []
-        for (tool, chord), together in groupby(taken, key=lambda w: (w.tool, w.chord)):
+        for (tool, chord), together in groupby(taken, key=lambda w: (w.tool, w.plan is not None)):
             single = [w.sweep for w in together]
             sweeps.extend(chained(single) if chord else single)
             tools.extend([tool] * (len(sweeps) - len(tools)))
-        volumes = self._removal.cut_all(sweeps, after=self._waiting[0].sweep if self._waiting else after)
+        if len(self._cut_to_mm) > _MOST_PLANS:
+            self._cut_to_mm.clear()
+            self._of_plan.clear()
+        self._cut_to_mm.update((w.plan, float(w.sweep.end_mm[2])) for w in taken if w.plan is not None)
+        volumes = self._removal.cut_all(sweeps, after=next((w.sweep for w in self._waiting.values()), after))
         self._last_tool = tools[-1]
         for tool, volume in zip(tools, volumes.tolist(), strict=True):
             if volume > 0.0:
@@ -236,6 +291,12 @@ class Material:
     def close(self) -> None:
         """End the worker threads."""
         self._removal.close()
+
+
+def _plan(start_mm: FloatArray, end_mm: FloatArray, tool: int) -> _Plan:
+    """What chords that retrace each other have in common."""
+    (ax, ay), (bx, by) = start_mm[:2].tolist(), end_mm[:2].tolist()
+    return round(ax, _DECIMALS), round(ay, _DECIMALS), round(bx, _DECIMALS), round(by, _DECIMALS), tool
 
 
 def _behind(sweep: Sweep, start_mm: FloatArray, feed: FloatArray) -> bool:

@@ -11,7 +11,7 @@ from gcode.events import Block, Event, ToolChange
 from twin.arrays import FloatArray
 from twin.motion.path import Move
 from twin.record import Collision, CollisionKind, ForceSamples, NcEvent, RunSummary, Step
-from twin.simulation.clock import SpindleClock, Turned
+from twin.simulation.clock import UNSAMPLED, SpindleClock, Turned
 from twin.simulation.contacts import Contact, collision_record, point
 from twin.simulation.material import Material
 from twin.simulation.nc_events import nc_event
@@ -61,9 +61,32 @@ class Recorder:
             self._totals.add_time(self.t_s)
         return nc_event(event, self.t_s, self._descriptions)
 
+    def turned(self, t_s: float, duration_s: float, move: Move, *, ends_only: bool = False) -> Turned:
+        """Turn the spindle during a part of a motion; its samples, none for a tool without a force model.
+
+        Args:
+            t_s: machine time at the beginning.
+            ends_only: see `SpindleClock.advance`.
+        """
+        if move.tool in self._without_forces:
+            self.clock.turn(duration_s, move.spindle_rpm)
+            return UNSAMPLED
+        return self.clock.advance(t_s, duration_s, move.spindle_rpm, ends_only=ends_only)
+
+    def turns(self, t_s: float, step_s: float, move: Move) -> Iterator[Turned]:
+        """The samples of equal steps of a motion, one after another without end; the clock is at the last one taken.
+
+        Args:
+            t_s: machine time at the beginning of the first step.
+            step_s: duration of each.
+        """
+        while True:
+            yield self.turned(t_s, step_s, move)
+            t_s += step_s
+
     def air_step(self, move: Move, start_mm: FloatArray, end_mm: FloatArray, duration_s: float) -> Step:
         """The record of a step that cuts nothing: the spindle turns on."""
-        turned = self.clock.advance(self.t_s, duration_s, move.spindle_rpm, ends_only=True)
+        turned = self.turned(self.t_s, duration_s, move, ends_only=True)
         return self.step(move, start_mm, end_mm, duration_s, turned, IN_AIR)
 
     def step(
@@ -93,7 +116,7 @@ class Recorder:
             feed_mm_min=move.feed_mm_min,
             spindle_rpm=move.spindle_rpm,
             engagement=solved.engagement,
-            samples=_samples(turned, solved.loads, move, forces=move.tool not in self._without_forces),
+            samples=_NO_SAMPLES if turned is UNSAMPLED else _samples(turned, solved.loads, move),
         )
         self._steps += 1
         self.t_s += duration_s
@@ -114,15 +137,13 @@ class Recorder:
         return self._totals.summary(complete=complete, areas_mm2=areas, removed_mm3=material.removed_mm3)
 
 
-def _samples(turned: Turned, loads: FloatArray | None, move: Move, *, forces: bool) -> ForceSamples:
-    """Force samples of a step; in air the first and the last only, none for a tool without a force model."""
+def _samples(turned: Turned, loads: FloatArray | None, move: Move) -> ForceSamples:
+    """Force samples of a step; in air the first and the last only."""
     times, angles = turned
     if loads is None:
         keep = [0, -1] if len(times) > 2 else slice(None)
         times, angles = times[keep], angles[keep]
         loads = np.zeros((len(times), 4))
-    if not forces:
-        times, angles, loads = times[:0], angles[:0], loads[:0]
     torque_nm = loads[:, 3] * 1e-3
     return ForceSamples(
         t_s=times,
@@ -131,3 +152,12 @@ def _samples(turned: Turned, loads: FloatArray | None, move: Move, *, forces: bo
         torque_nm=torque_nm,
         power_w=torque_nm * abs(move.spindle_rpm) * (2.0 * math.pi / 60.0),
     )
+
+
+_NO_SAMPLES = ForceSamples(
+    t_s=np.zeros(0),
+    spindle_angle_rad=np.zeros(0),
+    force_n=np.zeros((0, 3)),
+    torque_nm=np.zeros(0),
+    power_w=np.zeros(0),
+)

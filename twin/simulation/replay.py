@@ -84,7 +84,7 @@ def _joined_records(short: Joined, tool: ToolSetup, setup: Setup) -> Iterator[Re
     turned, t_s = deque[Turned](), recorder.t_s
     for item in short.items:
         if isinstance(item, Move):
-            turned.append(recorder.clock.advance(t_s, item.duration_s, item.spindle_rpm))
+            turned.append(recorder.turned(t_s, item.duration_s, item))
             t_s += item.duration_s
     ends = np.array([whole.start_mm, whole.end_mm])
     feed = (whole.end_mm - whole.start_mm) / whole.length_mm
@@ -142,13 +142,15 @@ def _cut_chords(
     material = setup.material
     for chords in chord_groups(move, pieces, tool, setup):
         steps = chord_steps(move, chords, tool, setup)
+        rigid_near = material.rigid_near(tool, np.array([chords[0][0], *(end for _, end, _ in chords)]))
         for (start, end, _), step in zip(chords, steps, strict=True):
             yield step
             if tool.forces is None:
                 material.add_chord(tool, start, end)
             else:
                 contacts.add(material.cut(tool, start, end, None), step.t_s, start)
-            contacts.add(material.touches(tool, start, end), step.t_s, start)
+            if rigid_near:
+                contacts.add(material.touches(tool, start, end), step.t_s, start)
 
 
 def _straight(move: Move, step_mm: float, chord_mm: float) -> Iterator[Piece]:

@@ -56,7 +56,7 @@ def piece_steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iter
     together = max(1, min(STEPS_TOGETHER, int(SAMPLES_TOGETHER / max(1.0, per_step))))
     ends = start + along * (np.arange(count + 1) / count)[:, None]
     pending = setup.material.pending(tool.number, start, along / length)
-    turns = setup.recorder.clock.turns(setup.recorder.t_s, step_s, move.spindle_rpm)
+    turns = setup.recorder.turns(setup.recorder.t_s, step_s, move)
     begun = _begun(move, tool, ends, along / length, pending, turns, setup.solver, together)
     for first, turned, answer in one_ahead(begun):
         for i, (samples, solved) in enumerate(zip(turned, answer(), strict=True), start=first):

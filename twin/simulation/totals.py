@@ -54,7 +54,10 @@ class Totals:
         self.collisions = 0
 
     def _tool(self, number: int) -> _Sums:
-        return self._tools.setdefault(number, _Sums(self._descriptions.get(number, "no tool")))
+        sums = self._tools.get(number)
+        if sums is None:
+            sums = self._tools[number] = _Sums(self._descriptions.get(number, "no tool"))
+        return sums
 
     def set_block(self, text: str) -> None:
         """Set the text of the NC block to which the next steps belong."""
