@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 _T = TypeVar("_T")
 
+#: Of a tool or an M code, in any control.
+_LARGEST_NUMBER = 99_999_999
+
 
 class DialectName(StrEnum):
     """Controls by name."""
@@ -105,6 +108,7 @@ ToolOption = Annotated[
     typer.Option(
         metavar="N",
         min=0,
+        max=_LARGEST_NUMBER,
         help="Tool in the spindle when the program starts, 0 for none; as in the settings or the job if not given.",
         show_default=False,
     ),
@@ -114,6 +118,7 @@ MCodeOption = Annotated[
     typer.Option(
         metavar="N",
         min=0,
+        max=_LARGEST_NUMBER,
         help="Number of an M code of the machine builder that moves nothing; may be repeated. Each use is a notice.",
         show_default=False,
     ),

@@ -32,8 +32,9 @@ FAR_RIVALS = 0.25
 _EQUAL = 0.998
 #: Most samples that are correlated over all delays; longer records are thinned out first.
 _MOST_SAMPLES = 1 << 20
-#: The simulation is sampled this many times finer, and at this rate at least, before it is band-limited to the log's.
-_FINER = 4
+#: The simulation is sampled this many times finer, and at this rate at least, before it is band-limited to the log's;
+#: never more times finer than the second number.
+_FINER, _FINEST = 4, 20_000
 _FINE_HZ = 20000.0
 
 
@@ -55,7 +56,7 @@ class Delay:
 def simulated_at_rate(run: RunForces, begin_s: float, count: int, rate_hz: float) -> FloatArray:
     """Shape (count, 3), the run's force on an even grid, band-limited to its rate."""
     pad = 16
-    finer = max(_FINER, int(np.ceil(_FINE_HZ / rate_hz)))
+    finer = min(max(_FINER, int(np.ceil(_FINE_HZ / rate_hz))), _FINEST)
     fine = run.at(begin_s + (np.arange((count + 2 * pad) * finer) / finer - pad) / rate_hz)
     return np.asarray(signal.resample_poly(fine, 1, finer, axis=0)[pad : pad + count])
 

@@ -32,7 +32,7 @@ _DEEPEST_MM = 30.0
 _EXPECTED = (
     "'box X Y Z', 'cylinder D H', either with 'at X Y Z' (centre in X and Y, top in Z), all in mm, or an STL file"
 )
-_N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
+_N = r"[-+]?(?:\d{1,9}(?:\.\d*)?|\.\d+)"
 _AT = re.compile(rf"\s+at\s+({_N})\s+({_N})\s+({_N})\s*$", re.IGNORECASE)
 _BOX = re.compile(rf"box\s+({_N})\s*[x ]\s*({_N})\s*[x ]\s*({_N})$", re.IGNORECASE)
 _CYLINDER = re.compile(rf"cylinder\s+({_N})\s*[x ]\s*({_N})$", re.IGNORECASE)

@@ -22,15 +22,11 @@ _MOST_CELLS = 2000
 _MOST_MAP = 4_000_000
 #: An axial step that is not given is never too coarse, mm.
 _DEFAULT_AXIAL_MM = 0.1
-#: Largest number: squares and products of several of them are still numbers.
-_LARGEST = 1e9
 
 
 def numbers_sensible(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """A number beyond any quantity of a machine would end in infinite results."""
-    for location, value in facts.numbers():
-        if abs(value) > _LARGEST:
-            yield wrong(location, value, f"at most {_LARGEST:g} in magnitude")
+    return facts.extremes()
 
 
 def _stock_extent_mm(facts: Facts) -> Sequence[float] | None:

@@ -13,6 +13,9 @@ from twin.errors import MeasuredError
 from twin.measured.log import Correction, ForceLog
 from twin.measured.uniform import pieces, uniform
 
+#: Least frequency and width, as a part of the sampling rate: coefficients of narrower filters are lost in rounding.
+_LEAST_PART = 1e-6
+
 Phase: TypeAlias = Literal["zero", "causal"]
 
 
@@ -56,18 +59,28 @@ class Filter:
             values: shape (n, k), evenly spaced.
 
         Raises:
-            MeasuredError: a frequency that is not below half the sampling rate.
+            MeasuredError: a frequency or a width that is not below half the sampling rate, or next to nothing.
         """
-        if not 0.0 < self.hz < 0.5 * rate_hz:
-            raise MeasuredError(
-                f"{self.kind} at {self.hz:g} Hz: expected it below half the sampling rate, {0.5 * rate_hz:g} Hz"
-            )
+        self._check(rate_hz)
         sos = self._sections(rate_hz)
         if self.phase == "causal":
             start = signal.sosfilt_zi(sos)[:, :, None] * values[0]
             return np.asarray(signal.sosfilt(sos, values, axis=0, zi=start)[0])
         pad = min(len(values) - 1, int(np.ceil(self._memory_s() * rate_hz)))
         return np.asarray(signal.sosfiltfilt(sos, values, axis=0, padlen=max(pad, 0)))
+
+    def _check(self, rate_hz: float) -> None:
+        least, most = _LEAST_PART * rate_hz, 0.5 * rate_hz
+        if not least <= self.hz < most:
+            raise MeasuredError(
+                f"{self.kind} at {self.hz:g} Hz: expected it below half the sampling rate, {most:g} Hz, and at least "
+                f"{least:g} Hz"
+            )
+        if self.kind == "notch" and not least <= self.hz / self.quality < most:
+            raise MeasuredError(
+                f"notch at {self.hz:g} Hz of quality {self.quality:g}: expected it {least:g} to {most:g} Hz wide, a "
+                f"quality of {self.hz / most:.3g} to {self.hz / least:.3g}"
+            )
 
     def _memory_s(self) -> float:
         """Time over which the filter rings."""

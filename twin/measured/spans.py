@@ -11,6 +11,8 @@ from twin.measured.log import Gap
 #: ``none``; ``air``: mean while the run cuts nothing; a span on the log's clock; or the numbers, N.
 Offset: TypeAlias = Literal["none", "air"] | Gap | tuple[float, float, float]
 
+#: Largest time, s, and force, N.
+_LARGEST = 1e9
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _WINDOW = re.compile(rf"^\s*({_NUMBER})\s*(?::|\.\.|–)\s*({_NUMBER})\s*s?\s*$")
 
@@ -25,6 +27,8 @@ def parse_window(text: str) -> Gap:
     if found is None:
         raise MeasuredError(f"window {text!r}: expected BEGIN:END in seconds, e.g. 4.00:4.02")
     begin, end = float(found[1]), float(found[2])
+    if max(-begin, end) > _LARGEST:
+        raise MeasuredError(f"window {text!r}: expected times of at most {_LARGEST:g} s")
     if not begin < end:
         raise MeasuredError(f"window {text!r}: ends at {end:g} s, expected an end after its beginning, {begin:g} s")
     return begin, end
@@ -48,4 +52,6 @@ def parse_offset(text: str) -> Offset:
         raise MeasuredError(
             f"offset {text!r}: expected air, none, BEGIN:END in seconds of the log, or X,Y,Z in N"
         ) from None
+    if not all(abs(force) <= _LARGEST for force in (x, y, z)):
+        raise MeasuredError(f"offset {text!r}: expected forces of at most {_LARGEST:g} N")
     return x, y, z

@@ -20,7 +20,8 @@ _MOST_RATIO = 20000
 _PLAIN_RATIO = 64
 #: Largest number of samples of an even grid for each measured one.
 _MOST_FILL = 20
-#: A log in parts with gaps between them may have more, up to this many, where the parts have samples enough.
+#: A log in parts with gaps between them may have more, up to this many, where the parts have samples enough; and so
+#: may a log at another rate.
 _MOST_SAMPLES = 4_000_000
 _LEAST_PART = 16
 
@@ -60,11 +61,14 @@ def resample(log: ForceLog, rate_hz: float) -> ForceLog:
         rate_hz: wanted rate; the nearest ratio of whole numbers up to 20000 is taken.
 
     Raises:
-        MeasuredError: a rate that is not above 0, or leaves no samples.
+        MeasuredError: a rate that is not above 0, leaves no samples, or makes millions from few.
     """
     if not 0.0 < rate_hz < np.inf:
         raise MeasuredError(f"rate {rate_hz:g} Hz, expected a number above 0")
     log = uniform(log)
+    count, most = len(log.t_s) / log.rate_hz * rate_hz, max(len(log.t_s), _MOST_SAMPLES)
+    if count > most:
+        raise MeasuredError(f"rate {rate_hz:g} Hz makes {count:.3g} samples, expected at most {most} for this log")
     ratio = Fraction(rate_hz / log.rate_hz).limit_denominator(_PLAIN_RATIO)
     if ratio == 0 or abs(float(ratio) * log.rate_hz / rate_hz - 1.0) > 1e-12:
         ratio = Fraction(rate_hz / log.rate_hz).limit_denominator(_MOST_RATIO)

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from twin.errors import JobError, ToolError
 from twin.job.library import with_library_tools
 from twin.moldmaking.model import MoldFile, MoldJob
+from twin.settings.extremes import extremes, numbers_in
 from twin.settings.problems import Problem, missing, problems_of, wrong
 from twin.settings.toml_file import read_toml
 from twin.tools.shape import ToolShape, tool_shape
@@ -56,7 +57,12 @@ def _job(data: Mapping[str, Any], path: Path) -> MoldJob:
         raise JobError(str(path), found) from error
     if unknown:
         raise JobError(str(path), [str(p) for p in unknown])
-    problems = [*_tool_problems(file), *_stage_problems(file), *_stock_problems(file, path.parent)]
+    problems = [
+        *extremes(numbers_in(data), MoldFile),
+        *_tool_problems(file),
+        *_stage_problems(file),
+        *_stock_problems(file, path.parent),
+    ]
     if problems:
         raise JobError(str(path), [str(p) for p in problems])
     return _joined(file, path)

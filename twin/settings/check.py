@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from twin.errors import SettingsError
+from twin.settings.extremes import extremes, numbers_in
 from twin.settings.problems import Problem, problems_of
 
 _Model = TypeVar("_Model", bound=BaseModel)
@@ -34,13 +35,21 @@ def checked(
         SettingsError: ``refuse``, with every mistake.
     """
     try:
-        return model.model_validate(values, strict=strict)
+        made = model.model_validate(values, strict=strict)
     except ValidationError as error:
         found = error.errors(include_url=False)
         problems = [*problems_of([e for e in found if e["loc"]], model)]
         texts = [str(Problem((name(str(p.location[0])), *p.location[1:]), p.text)) for p in problems]
         texts += [e["msg"].removeprefix("Value error, ") for e in found if not e["loc"]]
         raise refuse(source, texts) from None
+    extreme = [str(Problem((name(str(p.location[0])), *p.location[1:]), p.text)) for p in _extremes(made)]
+    if extreme:
+        raise refuse(source, extreme)
+    return made
+
+
+def _extremes(made: BaseModel) -> Iterator[Problem]:
+    return extremes(numbers_in(made.model_dump()), type(made))
 
 
 def changed(model: type[_Model], given: _Model | None, values: Mapping[str, Any], source: str) -> _Model:

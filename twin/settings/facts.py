@@ -7,8 +7,9 @@ from typing import Any, get_args
 
 from pydantic import BaseModel
 
+from twin.settings.extremes import extremes, numbers_in
 from twin.settings.keys import fields_of
-from twin.settings.problems import Location
+from twin.settings.problems import Location, Problem
 
 
 class Facts:
@@ -58,15 +59,11 @@ class Facts:
 
     def numbers(self) -> Iterator[tuple[Location, float]]:
         """Every number in the file that is not in a mistake, with its location."""
-        todo: list[tuple[Location, Any]] = [((), self._data)]
-        while todo:
-            location, value = todo.pop()
-            if isinstance(value, Mapping):
-                todo += [((*location, key), inner) for key, inner in reversed(list(value.items()))]
-            elif isinstance(value, Sequence) and not isinstance(value, str):
-                todo += [((*location, i), inner) for i, inner in reversed(list(enumerate(value)))]
-            elif isinstance(value, (int, float)) and not isinstance(value, bool) and not self.wrong(*location):
-                yield location, value
+        return (found for found in numbers_in(self._data) if not self.wrong(*found[0]))
+
+    def extremes(self) -> Iterator[Problem]:
+        """Numbers beyond any quantity of a machine."""
+        return extremes(self.numbers(), self._model)
 
     def wrong(self, *location: str | int) -> bool:
         """Whether a mistake is at a location or above it."""

@@ -101,15 +101,15 @@ def _location(error: ErrorDetails) -> Location:
 
 def _problem(location: Location, error: ErrorDetails, model: type[BaseModel]) -> Problem:
     if error["loc"][-1] == "[key]":
-        annotation, _ = _declared(location[:-1], model)
+        annotation, _ = declared(location[:-1], model)
         return _unknown_key(location, get_args(annotation)[0])
     if error["type"] == "extra_forbidden":
-        table, _ = _declared(location[:-1], model)
+        table, _ = declared(location[:-1], model)
         return unknown(location, fields_of(table))
     if error["type"] == "value_error":
         reason = str(error["ctx"]["error"]).partition(": ")[2]
         return Problem(location, f" = {show(error['input'])}: {reason}")
-    annotation, field = _declared(location, model)
+    annotation, field = declared(location, model)
     meaning = f" ({field.description})" if field is not None and field.description else ""
     expected = allowed(annotation, field.metadata if field is not None else ()) + meaning
     if error["type"] == "missing" and location == error["loc"]:
@@ -124,7 +124,7 @@ def _unknown_key(location: Location, annotation: Any) -> Problem:
     return Problem(location, f": unknown key; expected {allowed(annotation)}")
 
 
-def _declared(location: Location, model: type[BaseModel]) -> tuple[Any, FieldInfo | None]:
+def declared(location: Location, model: type[BaseModel]) -> tuple[Any, FieldInfo | None]:
     """Type and field that a location is declared with; the field is None inside lists, and for the file as a whole."""
     annotation: Any = model
     field: FieldInfo | None = None

@@ -8,10 +8,13 @@ import typer
 
 from gcode.cli.machine_options import ProgramFile, Setup, with_machine
 
+#: Rates of rapids, mm/min.
+_SLOWEST, _FASTEST = 0.001, 1e9
+
 
 def _rate(value: float) -> float:
-    if not 0.0 < value < float("inf"):
-        raise typer.BadParameter(f"{value} is not a positive, finite rate")
+    if not _SLOWEST <= value <= _FASTEST:
+        raise typer.BadParameter(f"{value} is not a rate; expected {_SLOWEST:g} to {_FASTEST:g}")
     return value
 
 

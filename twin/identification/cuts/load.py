@@ -57,7 +57,7 @@ def cuts_from_dict(data: Mapping[str, Any], path: str | PathLike[str], fit: Mapp
         problems += problems_of(error.errors(include_url=False), CutsFile)
     facts = Facts(data, [p.location for p in problems], CutsFile, _NO_DEFAULT)
     problems += [problem for rule in RULES for problem in rule(facts, path.parent)]
-    problems += _names(facts)
+    problems += [*facts.extremes(), *_names(facts)]
     if problems:
         raise CutsError(str(path), [str(_with_name(p, facts)) for p in problems])
     joined = _joined(data, path.parent)

@@ -30,7 +30,9 @@ def reach(
     force: Force = False,
     as_json: Json = False,
     quiet: Quiet = False,
-    threads: Annotated[int | None, typer.Option(min=1, help="Number of threads.", show_default="all cores")] = None,
+    threads: Annotated[
+        int | None, typer.Option(min=1, max=64, help="Number of threads.", show_default="all cores")
+    ] = None,
 ) -> None:
     """Find the material that tools cannot reach on a part: position, volume, thickness."""
     from twin.cli.console import say_json, warn
