@@ -82,6 +82,21 @@ def test_messages_are_clean(name: str, tmp_path: Path, capsys: pytest.CaptureFix
     assert not ACTING.search(printed)
 
 
+def test_a_batch_is_clean(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Names of rows, of logs and of columns, on both streams, in JSON and in the table that is written."""
+    of_log(tmp_path, log_file(tmp_path, names=f"{EVIL},Fx{EVIL},b"))
+    folder = tmp_path / EVIL.replace("/", "")
+    folder.mkdir()
+    table, out = folder / "t.csv", folder / "out.csv"
+    table.write_text(f"name,run,measured\n{EVIL},../run.mcap,../log.csv\nlost,../run.mcap,{EVIL}.csv\n")
+    for options in (["-o", str(out)], ["--json"]):
+        assert twin.cli.run(["compare", "--batch", str(table), *options]) == 1
+        printed = "".join(capsys.readouterr())
+        assert "columns are a" in printed
+        assert not ACTING.search(printed)
+    assert "columns are a" in out.read_text() and not ACTING.search(out.read_text())
+
+
 @pytest.mark.parametrize(
     "command", ["gcode check", "gcode stats", "twin replay", "twin job", "twin info", "twin tools"]
 )
