@@ -168,7 +168,7 @@ def _from_column(
     unit = "s" if at == table.clock else unit or table.units[at]
     known = find_unit(unit) if unit else ("time", 1.0)
     if known is None or known[0] != "time":
-        raise MeasuredError(f"{path}: time column {table.names[at]!r} is in {unit!r}, expected s, ms, us, ns or min")
+        raise MeasuredError(f"{path}: time column {table.names[at]!r} is in {unit!r}, expected s, ms, us, ns, min or h")
     t_s = table.values[:, at] * known[1]
     rows = np.abs(t_s) < LARGEST
     notes = [] if rows.all() else [f"{int((~rows).sum())} rows without a time passed over"]

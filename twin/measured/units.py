@@ -17,6 +17,7 @@ _UNITS: dict[str, tuple[Quantity, float]] = {
     **dict.fromkeys(("us", "usec", "microseconds"), ("time", 1e-6)),
     **dict.fromkeys(("ns", "nsec", "nanoseconds"), ("time", 1e-9)),
     **dict.fromkeys(("min", "minutes"), ("time", 60.0)),
+    **dict.fromkeys(("h", "hr", "hour", "hours"), ("time", 3600.0)),
     **dict.fromkeys(("n", "newton", "newtons"), ("force", 1.0)),
     "kn": ("force", 1e3),
     "un": ("force", 1e-6),

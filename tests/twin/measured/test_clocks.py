@@ -125,6 +125,12 @@ def test_seconds_of_the_day_over_midnight(tmp_path: Path) -> None:
     assert "time passes midnight at line 4: counted on" in log.notes
 
 
+def test_hours_of_the_day_over_midnight(tmp_path: Path) -> None:
+    day = [f"{(86399.5 + STEP_S * k) % 86400.0 / 3600.0:.9f};{x};{y};{z}" for k, (x, y, z) in enumerate(FORCE.tolist())]
+    log = read(tmp_path, "\n".join(["Time (h);Fx;Fy;Fz", *day]))
+    np.testing.assert_allclose(log.t_s - log.t_s[0], STEP_S * np.arange(8), atol=1e-5)
+
+
 def test_a_clock_that_falls_by_an_hour_is_refused(tmp_path: Path) -> None:
     text = written(lambda t: t.strftime("%H:%M:%S.%f"))
     with pytest.raises(MeasuredError, match=r"log.txt:10: time goes back"):
