@@ -31,14 +31,14 @@ from twin.cam.slices.steep_sections import with_steep_sections
 from twin.cam.slices.structuring_element import StructuringElement
 from twin.cam.surface.drop_lines import drop_lines
 from twin.cam.surface.surface import Surface, surface_of_mesh
-from twin.errors import ToolPathError
+from twin.errors import StockError, ToolPathError
 from twin.geometry.polygons.outline import box_area, grown
 from twin.geometry.polygons.region import Region
 from twin.planning.settings import PathSettings
 from twin.tools.shape import ToolShape
 from twin.tools.text import parse_tool
 from twin.workpiece.solids.from_mesh import Solid, load_mesh
-from twin.workpiece.solids.units import TOOL_DIAMETERS
+from twin.workpiece.solids.units import TOOL_DIAMETERS, size_doubts
 
 #: Called while work goes on: the current task, and the share of it that is done, 0 to 1.
 Progress: TypeAlias = Callable[[str, float], None]
@@ -108,7 +108,7 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, progress: Pro
     tool = parse_tool(settings.tool)
     _check_tool(settings, tool)
     progress("slicing", 0.0)
-    sliced = part if isinstance(part, SlicedPart) else slice_part(_mesh(settings, part, tool), settings.pitch_mm)
+    sliced = part if isinstance(part, SlicedPart) else _sliced(_mesh(settings, part, tool), settings.pitch_mm, tool)
     box = np.array([sliced.slices.low_mm, sliced.slices.high_mm])
     stock = np.reshape(settings.stock_mm, (2, 3)) if settings.stock_mm else box
     scan = settings.strategy == "scan"
@@ -131,6 +131,15 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, progress: Pro
         floor_mm=float(box[0, 2]) if settings.floor_z_mm is None else settings.floor_z_mm,
         safe_mm=safe,
     )
+
+
+def _sliced(mesh: Solid, pitch_mm: float, tool: ToolShape) -> SlicedPart:
+    """The part's slices; where they do not fit in memory, the message has the doubts about the part's unit."""
+    try:
+        return slice_part(mesh, pitch_mm)
+    except StockError as error:
+        doubts = size_doubts(mesh.name, mesh.box_mm, tool_mm=2.0 * tool.nominal_radius_mm)
+        raise StockError("; ".join((str(error), *doubts))) from error
 
 
 def _mesh(settings: PathSettings, part: Path | str, tool: ToolShape) -> Solid:

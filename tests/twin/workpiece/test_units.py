@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.small_parts import box
 
-from twin.errors import MeshError, SettingsError
+from twin.errors import MeshError, SettingsError, StockError
 from twin.job.load import job_from_dict
 from twin.moldmaking import mold_from_dict
 from twin.planning.part_reach import reach
@@ -64,6 +64,13 @@ def test_paths_and_reach_take_the_unit_and_doubt_a_part_smaller_than_the_tool(fi
     assert "taken to be in inch" in found.warnings[0]
     with pytest.raises(SettingsError, match='unit = "ft": expected one of "mm", "inch", "m", "auto"'):
         plan_paths(files["mm"], unit="ft", **keys)
+
+
+def test_a_part_too_large_to_slice_is_doubted_too(files: dict[str, Path]) -> None:
+    with pytest.raises(
+        StockError, match=r"do not fit in memory; .*mm.stl: the part is 3e\+04 mm long, larger than any"
+    ):
+        plan_paths(files["mm"], unit="m", strategy="scan", tool="ball 6", pitch_mm=0.5)
 
 
 def test_jobs_have_the_same_key(files: dict[str, Path]) -> None:

@@ -58,13 +58,13 @@ def mold(
     refuse_existing(program_paths(job, STAGES if stage is None else (stage,)).values(), force=force)
     with working(quiet=quiet or as_json, even=True) as progress:
         found = planned(job, stage=stage, progress=progress)
+    for warning in found.warnings:
+        warn(warning)
     files = found.write(force=force) | _drawn(found, plot, rrd, force=force)
     if as_json:
         say_json(mold_json(found, files))
     elif not quiet:
         print_mold(found, files)
-    for warning in found.warnings:
-        warn(warning)
 
 
 def _drawn(found: Mold, plot: Path | None, rrd: Path | None, *, force: bool) -> dict[str, Path]:
