@@ -32,10 +32,11 @@ def _lines() -> Iterator[str]:
     yield from ("", "## Groups of VDI 3323, order of magnitude", "")
     yield f"Source: {first.source}. {first.note.partition('. ')[2]}"
     yield ""
-    yield from ("| name | ISO 513 | material | kc1.1 = Ktc, N/mm2 | mc | Krc | Kac |", "| --- " * 7 + "|")
+    yield from ("| name | ISO 513 | material | kc1.1 = Ktc, N/mm2 | mc | Krc | Kac | also |", "| --- " * 8 + "|")
     for row in groups:
-        values = (f"{v:g}" for v in (row.Ktc, row.mt, row.Krc, row.Kac))
-        yield f"| {row.name} | {row.iso_group} | {row.note.partition('. ')[0]} | {' | '.join(values)} |"
+        values = [f"{v:g}" for v in (row.Ktc, row.mt, row.Krc, row.Kac)]
+        cells = (row.name, row.iso_group, row.note.partition(". ")[0], *values, "; ".join(row.aliases[:-1]))
+        yield f"| {' | '.join(cells)} |"
 
 
 def _section(row: Material) -> Iterator[str]:

@@ -30,6 +30,8 @@ def test_a_text_filters_and_a_name_prints_the_row(capsys: pytest.CaptureFixture[
     assert run(["materials", "ti-6al-4v"]) == 0
     out = capsys.readouterr().out
     assert "10.1017/CBO9780511843723" in out and "caution" in out
+    assert run(["materials", "Al7050"]) == 0
+    assert "\u2026" not in capsys.readouterr().out, "a long address is cut off"
     assert run(["materials", "ti-6al-4v", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["orthogonal"]["shear_stress_mpa"] == 613.0
 

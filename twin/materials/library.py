@@ -1,4 +1,4 @@
-"""The table of materials: ``twin/data/materials.toml``, read once."""
+"""The table of materials: ``materials.toml`` and ``material_groups.toml`` of ``twin/data``, read once."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
+from itertools import chain
 from types import MappingProxyType
 from typing import Any
 
@@ -26,9 +27,12 @@ def load_materials() -> Mapping[str, Material]:
         >>> for name, row in twin.load_materials().items():
         ...     print(name, row.Ktc, row.source)
     """
-    table = tomllib.loads(files("twin").joinpath("data/materials.toml").read_text("utf-8"))
-    rows = [*map(published_row, table["materials"]), *group_rows(table["groups"])]
+    rows = [*map(published_row, _data("materials")["materials"]), *group_rows(_data("material_groups")["groups"])]
     return MappingProxyType({row.name: row for row in rows})
+
+
+def _data(name: str) -> dict[str, Any]:
+    return tomllib.loads(files("twin").joinpath(f"data/{name}.toml").read_text("utf-8"))
 
 
 def published_row(values: Mapping[str, Any]) -> Material:
@@ -42,11 +46,11 @@ def published_row(values: Mapping[str, Any]) -> Material:
 def group_rows(groups: Mapping[str, Any]) -> Iterator[Material]:
     """The material groups of VDI 3323 under Kienzle's law, with the ratios of the radial and axial force."""
     shared = {key: groups[key] for key in ("source", "tool", "chip_range_mm", "caution")}
-    for number, iso_group, kc, mc, hardness, text in groups["rows"]:
+    for number, iso_group, kc, mc, hardness, text, *grades in groups["rows"]:
         yield Material.model_validate(
             {
                 "name": f"VDI 3323 group {number}",
-                "aliases": (f"{iso_group}{number}", f"VDI {number}", text),
+                "aliases": (f"{iso_group}{number}", f"VDI {number}", *chain(*grades), text),
                 "family": text,
                 "iso_group": iso_group,
                 "kind": "order of magnitude",
@@ -105,8 +109,12 @@ def near_names(name: str) -> str:
 
 
 def key_of(name: str) -> str:
-    """A name as it is compared: without case, blanks, hyphens and underscores, and in one spelling of aluminium."""
-    return re.sub(r"[\s_\-\u2010-\u2015]+", "", name).casefold().replace("aluminum", "aluminium")
+    """A name as it is compared: without case, blanks, hyphens and underscores, and in one spelling of aluminium.
+
+    The prefixes of aluminium alloys are one too: EN AW-7075, AA7075 and aluminium 7075 are Al7075.
+    """
+    key = re.sub(r"[\s_\-\u2010-\u2015]+", "", name).casefold().replace("aluminum", "aluminium")
+    return re.sub(r"^(?:enaw|aw|aa|aluminium)(?=\d{4})", "al", key)
 
 
 @cache

@@ -33,7 +33,7 @@ class Material(Table):
         aliases: other names of it.
         family: what kind of material it is, e.g. ``aluminium alloy``.
         iso_group: application group of ISO 513: P steel, M stainless steel, K cast iron, N non-ferrous metals,
-            S superalloys and titanium, H hardened materials.
+            plastics and wood, S superalloys and titanium, H hardened materials.
         kind: ``published test``, or ``order of magnitude`` for a catalogue value by material group.
         law: ``linear-edge`` or ``kienzle``.
         Ktc, Krc, Kac: tangential, radial, axial, per chip area, N/mm2; under Kienzle's law at a chip of 1 mm.

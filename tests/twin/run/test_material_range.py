@@ -75,6 +75,15 @@ def test_outside_the_range(tmp_path: Path, ranges: dict[str, Any], expected: lis
     assert all(line.startswith(start) for line, start in zip(found, expected, strict=True))
 
 
+def test_a_row_of_the_table_is_checked_against_its_own_range(tmp_path: Path) -> None:
+    watch, summary, _ = run(tmp_path, {"material": "AISI1045"})
+    (line,) = watch.doubts(summary)
+    assert line == (
+        'T1: 100 % of the engaged time is outside the range of cutting.material = "C45": largest uncut chip '
+        "thickness of 0.0589 mm (range 0 to 0.04); cutting speed at the tool's diameter of 90.5 m/min (range 37.7)"
+    )
+
+
 def test_an_order_of_magnitude_warns_at_every_use(tmp_path: Path) -> None:
     watch, summary, forces = run(tmp_path, {"material": "P6"})
     assert forces.any()

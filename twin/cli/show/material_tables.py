@@ -56,7 +56,7 @@ def row_lines(row: Material) -> Table:
     grid = Table.grid(padding=(0, 3))
     grid.add_column(style="dim", no_wrap=True)
     for name, text in row_items(row):
-        grid.add_row(name, Text(text))
+        grid.add_row(name, Text(text, overflow="fold"))
     return grid
 
 
