@@ -70,12 +70,12 @@ def chain_groups(pieces: Iterator[Piece], tool: ToolSetup, material: Material) -
     held = list(islice(pieces, STEPS_TOGETHER))
     while held:
         material.settle(tool, *held[0][:2])
-        count = _in_one_direction(held)
+        count = in_one_direction(held)
         yield held[:count]
         held = [*held[count:], *islice(pieces, count)]
 
 
-def _in_one_direction(chords: Sequence[Piece]) -> int:
+def in_one_direction(chords: Sequence[Piece]) -> int:
     """How many of the first chords go on in one direction along each axis and turn by no more than `_TURN_RAD`."""
     along, lengths = _along(chords)
     back = (np.minimum.accumulate(along, axis=0) < 0.0) & (np.maximum.accumulate(along, axis=0) > 0.0)
@@ -101,7 +101,7 @@ def chord_steps(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Set
         turned.append(recorder.turned(t_s, duration_s, move))
         t_s += duration_s
     if tool.forces is None:
-        solved = _solved_where_it_changes(move, chords, tool, setup)
+        solved = solved_where_it_changes(move, chords, tool, setup)
     else:
         ends = np.array([chords[0][0], *(end for _, end, _ in chords)])
         at = _middles(move, chords, tool, np.arange(len(chords)) + setup.material.waiting)
@@ -125,7 +125,7 @@ def _middles(move: Move, chords: Sequence[Piece], tool: ToolSetup, waiting: NDAr
     )
 
 
-def _solved_where_it_changes(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup) -> list[Solved]:
+def solved_where_it_changes(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup) -> list[Solved]:
     """The engagement of each chord, found at some of them; others take that of the nearest if those next to them agree.
 
     The sweeps of the chords themselves are not excluded: none reaches the front of the tool at a later one.

@@ -294,7 +294,7 @@ class Material:
 
 
 def _plan(start_mm: FloatArray, end_mm: FloatArray, tool: int) -> _Plan:
-    """What chords that retrace each other have in common."""
+    """Plan of a chord, which chords that retrace each other have in common."""
     (ax, ay), (bx, by) = start_mm[:2].tolist(), end_mm[:2].tolist()
     return round(ax, _DECIMALS), round(ay, _DECIMALS), round(bx, _DECIMALS), round(by, _DECIMALS), tool
 

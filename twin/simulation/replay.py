@@ -23,6 +23,7 @@ from twin.record import Record, RunSummary
 from twin.simulation.chords import chains, chord_groups, chord_steps, chords_are_steps
 from twin.simulation.clock import Turned
 from twin.simulation.contacts import Contacts, box_of, forbidden
+from twin.simulation.level_runs import LevelRun, cut_level_run, level_runs
 from twin.simulation.setup import Setup, prepare
 from twin.simulation.short_motions import Joined, joined
 from twin.simulation.solve import Solved
@@ -47,19 +48,33 @@ def replayed(setup: Setup) -> Iterator[Record]:
 
 def _cut_all(setup: Setup) -> Iterator[Record]:
     """The records of a program's motions and events."""
-    for item in joined(setup.moves, setup.step_mm, setup.tolerance.join_mm):
-        if isinstance(item, Joined):
+    short = joined(setup.moves, setup.step_mm, setup.tolerance.join_mm)
+    for item in level_runs(short, setup.tools, setup.step_mm):
+        yield from _one(item, setup)
+
+
+def _one(item: Move | Event | Joined | LevelRun, setup: Setup) -> Iterator[Record]:
+    """The records of motions or of an event."""
+    match item:
+        case Move():
+            yield from cut(item, setup)
+        case Joined():
             yield from cut_joined(item, setup)
-        else:
-            yield from _one(item, setup)
+        case LevelRun():
+            yield from _cut_run(item, setup)
+        case _:
+            yield setup.recorder.event(item)
 
 
-def _one(item: Move | Event, setup: Setup) -> Iterator[Record]:
-    """The records of one motion or event."""
-    if isinstance(item, Move):
-        yield from cut(item, setup)
-    else:
-        yield setup.recorder.event(item)
+def _cut_run(run: LevelRun, setup: Setup) -> Iterator[Record]:
+    """Short level motions in one chain where they are near the stock, else one by one."""
+    tool = setup.tools[run.first.tool]
+    ends = np.array([run.first.start_mm, *(end for _, end, _ in run.chords)])
+    if setup.material.near(tool, ends.min(axis=0), ends.max(axis=0)):
+        yield from cut_level_run(run, tool, setup)
+        return
+    for item in run.items:
+        yield from _one(item, setup)
 
 
 def cut_joined(short: Joined, setup: Setup) -> Iterator[Record]:
