@@ -24,7 +24,8 @@ from pathlib import Path
 
 from benchmarks.report import report
 from gcode import interpret, motion_arrays
-from gcode.bulk.plain_runs import PlainStart, plain_run
+from gcode.bulk.plain_rules import PlainRules, PlainStart
+from gcode.bulk.plain_runs import plain_run
 
 RS274 = shutil.which("rs274")
 POINTS_A_PASS = 400
@@ -53,11 +54,9 @@ def surface_program(lines: int, seed: int, *, numbered: bool = False) -> bytes:
 def run_plain(text: bytes) -> None:
     """The plain lines alone."""
     offset = len(HEAD)
-    start = PlainStart((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), 1.0, absolute=True, rapid=False, feed_mm_min=1200.0, line=7)
-    while (run := plain_run(text, offset, start)) is not None:
-        offset = run.offset
-        line = start.line + run.lines
-        start = PlainStart(run.position_mm, start.zero_mm, 1.0, True, run.rapid_after, run.feed_after, line)
+    start = PlainStart((0.0, 0.0, 5.0), (0.0, 0.0, 0.0), 1.0, absolute=True, code=1, feed_mm_min=1200.0, line=7)
+    while (run := plain_run(text, offset, start, PlainRules())[0]) is not None:
+        offset, start = run.offset, run.after
 
 
 def run_arrays(text: bytes) -> None:

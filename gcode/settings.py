@@ -79,7 +79,7 @@ class Limits:
     Attributes:
         blocks: blocks executed in all.
         repeated: blocks executed beyond the number of lines of the program and its subprograms, that is again and
-            again, by loops and repeats. Runs of plain straight motions are not counted.
+            again, by loops and repeats. Runs of plain lines are not counted.
         jumps: backward jumps executed in all: loops, and repeats of subprograms and macros.
         idle_jumps: backward jumps executed one after another without a motion between them.
         nesting: depth of subprogram and macro calls.

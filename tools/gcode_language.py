@@ -261,6 +261,10 @@ def limits() -> str:
         ("lines of a leader before the %", str(leader.LEADER_LINES), "FANUC, Haas"),
         ("blocks without motion that cutter compensation reads past", str(BLOCKS_READ_OVER), "FANUC, Haas"),
         ("straight motions per spline", str(splines.CURVE_PIECES), "LinuxCNC"),
-        ("lines read in one batch", f"{plain_runs.MAX_LINES:,}", "plain straight motions; no visible effect"),
+        (
+            "lines read in one batch",
+            f"{plain_runs.MAX_LINES:,}",
+            "lines of motions without effect on flow or modes; no visible effect",
+        ),
     )
     return table(("quantity", "at most", ""), rows)

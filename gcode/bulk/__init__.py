@@ -1,1 +1,1 @@
-"""Runs of plain G0/G1 lines, read and executed at once with array arithmetic."""
+"""Runs of plain lines of motions, read and executed at once with array arithmetic."""

@@ -1,7 +1,7 @@
 """Many lines of plain words at once: a regular expression finds them, array arithmetic reads their numbers.
 
-A plain line may begin with N, holds words G0, G1, X, Y, Z, F with plain numbers in any order, and nothing else; it may
-be empty.
+A plain line may begin with N and holds words G0 to G3, X, Y, Z, I, J, K, R, F, S, M3 to M5, M7 to M9 with plain numbers
+in any order, comments between them, and nothing else; it may be empty.
 The numbers are the doubles that `float` gives for their text, to the last bit.
 """
 
@@ -18,13 +18,20 @@ _BLANKS = rb"[ \t]{0,9}+"
 #: Nine digits before the point stay below the largest number that a word may have.
 _UNSIGNED = rb"(?:[0-9]{1,9}+(?:\.[0-9]{0,30}+)?+|\.[0-9]{1,30}+)"
 _NUMBER = rb"[Nn]" + _BLANKS + rb"[0-9]{1,9}+(?!\.)" + _BLANKS
+#: A comment that ends the program (``(abort,...)``) is left to the interpreter.
+_NO_ABORT = rb"(?![ \t]*+[Aa][Bb][Oo][Rr][Tt])"
 _WORDS = (
-    rb"[XYZxyz]" + _BLANKS + rb"[+-]?+" + _UNSIGNED,
-    rb"[Gg]" + _BLANKS + rb"(?:0[01]?+|1)(?![0-9.])",
-    rb"[Ff]" + _BLANKS + rb"\+?+" + _UNSIGNED,
+    rb"[XYZIJKRxyzijkr]" + _BLANKS + rb"[+-]?+" + _UNSIGNED,
+    rb"[Gg]" + _BLANKS + rb"(?:0[0-3]?+|[1-3])(?![0-9.])",
+    rb"[FfSs]" + _BLANKS + rb"\+?+" + _UNSIGNED,
+    rb"[Mm]" + _BLANKS + rb"0?+[345789](?![0-9.])",
+    rb"\(" + _NO_ABORT + rb"[\t -'*-~]{0,200}+\)",
 )
+#: The end of a line by the meaning of a semicolon: it ends the block, or it starts a comment.
+_LINE_ENDS = {True: rb"(?:;[ \t]{0,9}+)?+\r?+\n", False: rb"(?:;" + _NO_ABORT + rb"[\t -~]{0,200}+)?+\r?+\n"}
 #: Every quantifier is possessive, so that nothing is tried twice and the time grows with the text and not faster.
-_LINE = _BLANKS + rb"(?:" + _NUMBER + rb")?+(?:(?:" + rb"|".join(_WORDS) + rb")" + _BLANKS + rb")*+\r?+\n"
+_LINE = _BLANKS + rb"(?:" + _NUMBER + rb")?+(?:(?:" + rb"|".join(_WORDS) + rb")" + _BLANKS + rb")*+"
+_COMMENT = re.compile(rb"\([^)]*+\)|;[^\n]*+")
 
 #: A whole number of up to this many digits is exact as a double, and so is the power of ten that divides it.
 _EXACT_DIGITS = 15
@@ -59,21 +66,28 @@ class WordArrays:
     pointed: NDArray[np.bool_]
 
 
-def plain_end(buffer: bytes, offset: int, max_lines: int) -> int:
+def plain_end(buffer: bytes, offset: int, max_lines: int, *, semicolon_ends_block: bool = True) -> int:
     """Finds the end of the plain lines that begin at `offset`: after the line end of the last of at most `max_lines`.
 
     A last line without a line end is not one of them. So that few expressions are ever made, the number is the power
     of two in `max_lines`: where there are more lines, a further call finds the rest.
+
+    Args:
+        buffer: the program's text.
+        offset: where a line begins.
+        max_lines: how many lines to take at most.
+        semicolon_ends_block: whether a semicolon ends a block, else it starts a comment.
     """
     if max_lines < 1:
         return offset
-    match = _lines(1 << max_lines.bit_length() - 1).match(buffer, offset, min(len(buffer), offset + MAX_BYTES))
+    lines = _lines(1 << max_lines.bit_length() - 1, semicolon_ends_block)
+    match = lines.match(buffer, offset, min(len(buffer), offset + MAX_BYTES))
     return offset if match is None else buffer.rfind(b"\n", offset, match.end()) + 1
 
 
-@lru_cache(maxsize=16)
-def _lines(most: int) -> re.Pattern[bytes]:
-    return re.compile(rb"(?:" + _LINE + rb"){1,%d}+" % most)
+@lru_cache(maxsize=32)
+def _lines(most: int, semicolon_ends_block: bool) -> re.Pattern[bytes]:
+    return re.compile(rb"(?:" + _LINE + _LINE_ENDS[semicolon_ends_block] + rb"){1,%d}+" % most)
 
 
 def read_words(buffer: bytes, offset: int, end: int) -> WordArrays:
@@ -84,7 +98,10 @@ def read_words(buffer: bytes, offset: int, end: int) -> WordArrays:
         offset: where the first line begins.
         end: after the end of the last line, as `plain_end` returns it.
     """
-    text = np.frombuffer(buffer, np.uint8, end - offset, offset)
+    lines = buffer[offset:end]
+    if b"(" in lines or b";" in lines:
+        lines = _COMMENT.sub(lambda comment: b" " * len(comment[0]), lines)
+    text = np.frombuffer(lines, np.uint8)
     seen = _COUNTS[text].cumsum()
     at = np.flatnonzero(text >= ord("A"))
     before = seen[at]
@@ -97,7 +114,7 @@ def read_words(buffer: bytes, offset: int, end: int) -> WordArrays:
     value = mantissa / _POWERS[decimals]
     minus = (seen[text == ord("-")] >> _FIELD & _MASK) - 1
     value[minus] = -value[minus]
-    _read_long(buffer, offset, end, at, np.diff(ends, prepend=0), value)
+    _read_long(lines, at, np.diff(ends, prepend=0), value)
     pointed = np.zeros(at.size, dtype=np.bool_)
     pointed[decimals_of] = True
     return WordArrays(text[at] & _CAPITAL, before >> 2 * _FIELD, value, pointed)
@@ -114,16 +131,9 @@ def _whole_numbers(
     return np.add.reduceat(_POWERS[places] * digits, begins), ends
 
 
-def _read_long(
-    buffer: bytes,
-    offset: int,
-    end: int,
-    at: NDArray[np.intp],
-    counts: NDArray[np.int64],
-    value: NDArray[np.float64],
-) -> None:
+def _read_long(lines: bytes, at: NDArray[np.intp], counts: NDArray[np.int64], value: NDArray[np.float64]) -> None:
     """Reads the numbers with more digits than exact arithmetic has room for, one by one, into `value`."""
     for index in np.flatnonzero(counts > _EXACT_DIGITS).tolist():
-        stop = int(at[index + 1]) if index + 1 < at.size else end - offset
-        word = buffer[offset + int(at[index]) + 1 : offset + stop]
+        stop = int(at[index + 1]) if index + 1 < at.size else len(lines)
+        word = lines[int(at[index]) + 1 : stop]
         value[index] = float(word.split(b"\n", 1)[0])

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TypeAlias
 
-from gcode.bulk.plain_runs import PlainBatch, expand
+from gcode.bulk.plain_batch import PlainBatch, expand
 from gcode.dialects import AUTO, DIALECTS, FANUC, Dialect, dialect_named
 from gcode.errors import GcodeError, Place
 from gcode.events import Event, Notice
@@ -83,7 +83,7 @@ def run(
     dialect: Dialect | str = FANUC,
     settings: MachineSettings | None = None,
 ) -> Iterator[Event | PlainBatch]:
-    """Runs a program as `interpret` does, but keeps runs of plain straight motions together, for speed.
+    """Runs a program as `interpret` does, but keeps runs of plain lines together, for speed.
 
     Arguments and errors as for `interpret`.
 

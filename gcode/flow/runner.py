@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import replace
 
-from gcode.bulk.plain_runs import MAX_LINES, PlainBatch, PlainRun, PlainStart, plain_run
+from gcode.bulk.plain_batch import PlainBatch
+from gcode.bulk.plain_rules import PlainStart, plain_rules
+from gcode.bulk.plain_runs import MAX_LINES, PlainRun, plain_run
 from gcode.control.state import State, same_position
 from gcode.dialects import Dialect
 from gcode.errors import GcodeError, Place
@@ -26,6 +28,7 @@ from gcode.flow.tape_leader import leader_end
 from gcode.language.block_parser import parse_blocks
 from gcode.language.blocks import OWord, ParsedBlock
 from gcode.language.program import Program, Spot
+from gcode.phases.arcs import arc_tolerance
 from gcode.phases.cutter_compensation import flushed
 from gcode.phases.g10 import skipped_data
 from gcode.settings import MachineSettings
@@ -34,6 +37,10 @@ from gcode.settings import MachineSettings
 _PLACED_LINES = 1000
 #: Events that count as those of one block; canned cycles with many holes make more.
 _EVENTS_OF_A_BLOCK = 4
+#: Motion codes of plain lines, by their number.
+_PLAIN_MOTIONS = ("G0", "G1", "G2", "G3")
+#: Fewest lines that are read at once: fewer are after lines that were read in vain, then more again.
+_FEWEST_LINES = 64
 #: Parsed lines that are kept, for programs that jump and call.
 _KEPT_LINES = 50_000
 
@@ -46,7 +53,7 @@ class Runner:
         dialect: the control whose language it is in.
         settings: the machine at the program's start.
         refuse: takes each refusal; if it returns, the program continues.
-        bulk: take runs of plain straight motions at once, for speed.
+        bulk: take runs of plain lines at once, for speed.
 
     Attributes:
         session: the memory of this run.
@@ -64,6 +71,8 @@ class Runner:
         self.session = Session(program, dialect, settings, SystemVariables)
         self._refuse = refuse
         self._bulk = bulk
+        self._rules = plain_rules(dialect, settings)
+        self._most_lines = MAX_LINES
         self._parsed: dict[tuple[int, int], tuple[tuple[ParsedBlock, ...], int]] = {}
 
     def run(self) -> Iterator[Event | PlainBatch]:
@@ -209,34 +218,26 @@ class Runner:
         return moved
 
     def _plain(self) -> PlainBatch | None:
-        """A run of plain motion blocks from here on, taken at once; None where there is none."""
+        """A run of plain blocks from here on, taken at once; None where there is none."""
         session, level, state = self.session, self.session.level, self.session.state
         if level.queue or session.modal_macro is not None or not is_plain(state):
             return None
-        feed = state.modes.feed
-        start = PlainStart(
-            position_mm=state.position_mm,
-            zero_mm=state.frame.zero_mm,
-            unit_mm=state.modes.unit_mm,
-            absolute=state.modes.absolute,
-            rapid=state.modes.motion == "G0",
-            feed_mm_min=feed,
-            line=level.spot.line,
-        )
-        most = min(MAX_LINES, session.settings.limits.blocks - session.blocks)
-        run = plain_run(level.program.text, level.spot.offset, start, max_lines=most)
+        start = _plain_start(state, level.spot.line)
+        most = min(self._most_lines, session.settings.limits.blocks - session.blocks)
+        run, vain = plain_run(level.program.text, level.spot.offset, start, self._rules, max_lines=most)
+        if vain:
+            self._most_lines = max(_FEWEST_LINES, min(self._most_lines, 4 * run.lines if run else 0))
+        elif run is not None:
+            self._most_lines = min(MAX_LINES, 2 * self._most_lines)
         if run is None:
             return None
-        line = level.spot.line
-        session.count_blocks(line, run.lines)
-        level.spot = Spot(run.offset, line + run.lines)
+        session.count_blocks(start.line, run.lines)
+        level.spot = Spot(run.offset, run.after.line)
         level.fresh = False
-        session.jumps_at_motion = session.jumps
+        if run.line.size:
+            session.jumps_at_motion = session.jumps
         session.place = _last_place(level, run)
-        motion = "G0" if run.rapid_after else "G1"
-        session.state = replace(state, position_mm=run.position_mm, started=True)
-        if motion != state.modes.motion or run.feed_after != feed:
-            session.state = session.state.with_modes(motion=motion, base_motion=motion, feed=run.feed_after)
+        session.state = _state_after(state, start, run)
         if run.label_after is not None:
             session.last_label = run.label_after
         return PlainBatch(
@@ -248,6 +249,40 @@ class Runner:
             calls=level.calls,
             extra=state.extra,
         )
+
+
+def _plain_start(state: State, line: int) -> PlainStart:
+    modes, machine = state.modes, state.machine
+    return PlainStart(
+        position_mm=state.position_mm,
+        zero_mm=state.frame.zero_mm,
+        unit_mm=modes.unit_mm,
+        absolute=modes.absolute,
+        code=_PLAIN_MOTIONS.index(modes.motion),
+        feed_mm_min=modes.feed,
+        line=line,
+        plane=machine.plane,
+        absolute_centres=modes.absolute_centres,
+        arc_tolerance=arc_tolerance(state),
+        spindle_rpm=machine.spindle_rpm,
+        spindle_direction=machine.spindle_direction,
+        mist=modes.mist,
+        flood=modes.flood,
+    )
+
+
+def _state_after(state: State, start: PlainStart, run: PlainRun) -> State:
+    """The control after a run, of which only what has changed is made anew."""
+    after = run.after
+    if (after.spindle_rpm, after.spindle_direction) != (start.spindle_rpm, start.spindle_direction):
+        state = state.with_machine(spindle_rpm=after.spindle_rpm, spindle_direction=after.spindle_direction)
+    modes = (after.code, after.feed_mm_min, after.mist, after.flood)
+    if modes != (start.code, start.feed_mm_min, start.mist, start.flood):
+        motion = _PLAIN_MOTIONS[after.code]
+        state = state.with_modes(
+            motion=motion, base_motion=motion, feed=after.feed_mm_min, mist=after.mist, flood=after.flood
+        )
+    return replace(state, position_mm=after.position_mm, started=state.started or run.block.size > 0)
 
 
 def _placed(level: Level, offset: int, blocks: tuple[ParsedBlock, ...]) -> tuple[ParsedBlock, ...]:
@@ -273,10 +308,10 @@ def block_is_plain(blocks: tuple[ParsedBlock, ...]) -> bool:
 
 
 def is_plain(state: State) -> bool:
-    """True where a straight motion's end is the program zero and the words, and its feed is F."""
+    """True where a motion's end is the program zero and the words, and its feed is F."""
     modes = state.modes
     return (
-        modes.motion in ("G0", "G1")
+        modes.motion in _PLAIN_MOTIONS
         and state.waiting is None
         and state.frame.matrix is None
         and not modes.polar
@@ -289,5 +324,4 @@ def is_plain(state: State) -> bool:
         and modes.surface_speed is None
         and state.machine.feed_mode == "per-minute"
         and state.machine.wcs in state.setup.offsets
-        and state.control.settings.decimal_point == "calculator"
     )

@@ -176,7 +176,7 @@ def _centre_from_words(state: State, command: Command, ends: _Ends, words: Mappi
     radii = _radii(state, ends, centre)
     if max(radii) <= SAME_POSITION_MM:
         raise command.block.error(None, "arc-zero-radius", "an arc of radius 0", "a centre away from the start")
-    if not _tolerance(state).accepts(*radii):
+    if not arc_tolerance(state).accepts(*radii):
         raise _radius_error(state, command, ends, words, radii)
     return centre
 
@@ -212,15 +212,16 @@ def _radius_error(
         f"with {now} centre {' '.join(word.text for word in words.values())}"
     )
     alternative = _radii(state, ends, _centre(state, ends, words, absolute=not state.modes.absolute_centres))
-    tolerance = _tolerance(state)
+    tolerance = arc_tolerance(state)
     expected = f"radii within {tolerance}{',' if tolerance.relative else ''} of each other"
-    if _tolerance(state).accepts(*alternative) and min(alternative) > SAME_POSITION_MM:
+    if arc_tolerance(state).accepts(*alternative) and min(alternative) > SAME_POSITION_MM:
         switch = "G91.1" if state.modes.absolute_centres else "G90.1"
         expected += f"; {other} arc centres ({switch}, or the setting arc_centres) would fit"
     return command.block.error(next(iter(words.values())), "arc-radius", problem, expected)
 
 
-def _tolerance(state: State) -> ArcTolerance:
+def arc_tolerance(state: State) -> ArcTolerance:
+    """How far the radii at the ends of an arc may differ on this machine, in the present unit."""
     given = state.control.settings.arc_tolerance_mm
     return (
         state.control.dialect.arc_tolerance.in_unit(state.modes.unit_mm)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gcode.bulk.plain_runs import PlainBatch
+from gcode.bulk.plain_batch import PlainBatch
 from gcode.dialects import FANUC, Dialect
 from gcode.errors import GcodeError
 from gcode.events import NO_EXTRA, ArcMotion, Dwell, Event, Extra, LinearMotion, MotionState, Point
@@ -217,7 +217,7 @@ class _Collector:
             self._close_rows()
             if len(event.run.line):
                 self._add(_of_batch(event))
-                self._at, self._extra = event.run.position_mm, event.extra
+                self._at, self._extra = event.run.after.position_mm, event.extra
         elif isinstance(event, LinearMotion | ArcMotion | Dwell):
             self._rows.append(self._row(event))
             if len(self._rows) >= self._wanted:
@@ -274,10 +274,25 @@ class _Collector:
 def _of_batch(batch: PlainBatch) -> MotionArrays:
     run = batch.run
     count = len(run.line)
-    columns: dict[str, Any] = {name: np.zeros((count, *shape), kind) for name, (kind, shape) in _COLUMNS.items()}
-    columns["kind"] = np.where(run.rapid, MotionKind.RAPID, MotionKind.FEED).astype(np.uint8)
-    columns["line"], columns["end_mm"], columns["feed_mm_min"] = run.line, run.end_mm, run.feed_mm_min
-    columns["start_mm"] = np.concatenate([[batch.start.position_mm], run.end_mm[:-1]])
-    columns["centre_mm"].fill(np.nan)
-    columns["extra"][:] = batch.extra
-    return MotionArrays(**columns, states=(batch.state,), files=(batch.file,))
+    states, state = batch.states()
+    arc = run.code >= 2
+    return MotionArrays(
+        kind=_KIND_OF_CODE[run.code],
+        line=run.line,
+        start_mm=np.concatenate([[batch.start.position_mm], run.end_mm[:-1]]),
+        end_mm=run.end_mm,
+        centre_mm=run.centre_mm,
+        plane=np.where(arc, batch.start.plane, 0).astype(np.uint8),
+        turns=np.where(arc, 2 * run.code - 5, 0).astype(np.int32),
+        feed_mm_min=run.feed_mm_min,
+        seconds=np.zeros(count),
+        extra=np.tile(np.array(batch.extra), (count, 1)),
+        state=state,
+        file=np.zeros(count, dtype=np.int32),
+        states=states,
+        files=(batch.file,),
+    )
+
+
+#: Kinds of motion of G0, G1, G2, G3.
+_KIND_OF_CODE = np.array([MotionKind.RAPID, MotionKind.FEED, MotionKind.ARC, MotionKind.ARC], dtype=np.uint8)

@@ -11,29 +11,20 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from support.nc_numbers import digits, numbers
 
-from gcode.bulk.plain_runs import LEAST_LINES, PlainBatch, PlainRun, PlainStart, expand, plain_run
-from gcode.bulk.plain_words import plain_end, read_words
+from gcode.bulk.plain_batch import PlainBatch, expand
+from gcode.bulk.plain_rules import PlainRules, PlainStart
+from gcode.bulk.plain_runs import LEAST_LINES, PlainRun, plain_run
+from gcode.bulk.plain_words import plain_end
 from gcode.dialects import dialect_named
+from gcode.dialects.dialect import ArcTolerance
 from gcode.errors import Call, GcodeError
-from gcode.events import Block, Event, LinearMotion, MotionState
+from gcode.events import ArcMotion, Block, Event, LinearMotion, MotionState, ProgramStop
 from gcode.flow.interpreter import interpret, run
 from gcode.flow.runner import Runner
 from gcode.language.program import program_of
 from gcode.settings import Limits, MachineSettings
-
-
-def digits(most: int, least: int = 1) -> st.SearchStrategy[str]:
-    """Digits, also with zeros first and last."""
-    return st.builds(lambda n, width: f"{n:0{most}d}"[:width], st.integers(0, 10**most - 1), st.integers(least, most))
-
-
-def numbers(decimals: int) -> st.SearchStrategy[str]:
-    """Numbers of up to nine digits and these decimals: with and without sign, point, and digits on each side of it."""
-    sign, whole = st.sampled_from(["", "", "+", "-"]), digits(9)
-    after = digits(decimals, 0).map(lambda part: f".{part}")
-    size = st.one_of(whole, st.builds(str.__add__, whole, after), digits(decimals).map(lambda part: f".{part}"))
-    return st.builds(str.__add__, sign, size)
 
 
 def start_at(**changes: Any) -> PlainStart:
@@ -42,16 +33,21 @@ def start_at(**changes: Any) -> PlainStart:
         "zero_mm": (0.0, 0.0, 0.0),
         "unit_mm": 1.0,
         "absolute": True,
-        "rapid": False,
+        "code": 1,
         "feed_mm_min": 100.0,
         "line": 7,
+        "arc_tolerance": ArcTolerance(absolute_mm=0.01),
     }
     return PlainStart(**(values | changes))
 
 
+#: Rules that most of these tests are for.
+RULES: dict[str, Any] = {"m_codes": frozenset({3, 4, 5, 7, 8, 9}), "after_motion": frozenset({5, 9})}
+
+
 def taken(text: str, **options: Any) -> PlainRun | None:
-    start = start_at(**options.pop("start", {}))
-    return plain_run(text.encode(), 0, start, **({"least_lines": 1} | options))
+    start, rules = start_at(**options.pop("start", {})), PlainRules(**(RULES | options.pop("rules", {})))
+    return plain_run(text.encode(), 0, start, rules, **({"least_lines": 1} | options))[0]
 
 
 def one_by_one(text: str, dialect: str, given_settings: MachineSettings) -> tuple[list[Event], str]:
@@ -84,33 +80,49 @@ def in_runs(text: str, dialect: str, given_settings: MachineSettings) -> tuple[l
 
 def bits(events: list[Event]) -> bytes:
     """Coordinates and feeds of motions, where 0 and -0 differ."""
-    motions = [event for event in events if isinstance(event, LinearMotion)]
-    return b"".join(struct.pack("7d", *m.start_mm, *m.end_mm, m.feed_mm_min) for m in motions)
+    motions = [event for event in events if isinstance(event, LinearMotion | ArcMotion)]
+    centres = [event.centre_mm for event in motions if isinstance(event, ArcMotion)]
+    straight = [struct.pack("7d", *m.start_mm, *m.end_mm, m.feed_mm_min) for m in motions]
+    return b"".join([*straight, *(struct.pack("3d", *centre) for centre in centres)])
 
 
 COORDINATE = numbers(6)
 NUMBERS = {
-    "G": st.sampled_from(["0", "1", "00", "01"]),
+    "G": st.sampled_from(["0", "1", "00", "01", "2", "03"]),
     "F": st.builds(str.__add__, digits(4), st.sampled_from(["", "."])),
+    "S": st.builds(str.__add__, digits(4), st.sampled_from(["", ".", ".5"])),
+    "M": st.sampled_from(["3", "4", "05", "7", "08", "9"]),
 }
+COMMENTS = st.sampled_from(["", "", "", "(c1)", " (X1 G2; )", "(\t%N1)", "( msg, A)", "()"])
 
 
 @st.composite
 def plain_lines(draw: st.DrawFn) -> str:
     """Words in any order, mostly each letter once, with blanks, small letters and both line ends."""
-    letters = draw(st.lists(st.sampled_from("XYZXYZGF"), max_size=6, unique=draw(st.integers(0, 20)) > 0))
+    letters = draw(st.lists(st.sampled_from("XYZXYZGFSM"), max_size=6, unique=draw(st.integers(0, 20)) > 0))
     blank = st.sampled_from(["", "", "", " ", "\t "])
     words = []
     for letter in letters:
         number = draw(NUMBERS.get(letter, COORDINATE))
         words.append(f"{letter}{draw(blank)}{number}{draw(blank)}")
-    line = "".join(words)
+    line = draw(COMMENTS).join(words) + draw(COMMENTS)
     line = draw(st.sampled_from(["", "", "N1 ", f"N{draw(st.integers(0, 999999))}"])) + line
     return (line.lower() if draw(st.integers(0, 9)) == 0 else line) + draw(st.sampled_from(["\n", "\n", "\r\n"]))
 
 
+#: Ends and centres of arcs from wherever the tool is: small whole numbers, so that many of them fit.
+ARC_WORDS = st.sampled_from(
+    """G91G2X2I1 | G91G3X-2I-1Z1 | I1J1 | G3I-1 | G2Y3R2 | G3X1Y1R1.0 | X2R-1.5 | G02X.5R0.25 | G2X1Z1I.5
+    | X-4Y0Z-1I-2J0 | Y.5J.25S9 | G18G2X2I1 | G19G3Z2K1 | X2K1I0 | G2X1.0000001I.5 | X0.0000001I1 | X1I.50001 | G2X1I.47
+    | G3Z1J1 | G2X1I9 | G2X0I0 | G1X1I1 | G2X3R1.5M8 | G3X1Y1R.7 (c) | G90 | G2X5Y5R9 | X1Y1I4J4 | G90.1 | X5I2.5J0
+    | G91.1 | G2 | G3X1R-0 | G20 | G21 | G17 | G91 | R3Y1 | I3 | G1X1 | G0Z1M5
+    """.replace("\n", "").split("|")
+).map(lambda line: line.strip() + "\n")
+
 OTHER_LINES = st.sampled_from(
     """G90 | G91 | G20 | G21 | G2 X1 Y1 R5 | (X1) | G4 P100 | G55 | G53 G0 X1 | X1;Y2 | M29 S100 | G43 H1 | G43 H1 Z5
+    | (abort,x) | (a)(b) | X1(\u00e9) | (c | X1)( | X5 ; Y2 | X1 ; | ;abort, | ;a(b | M6 | M3 M8 | S1000 M5 X3
+    | G1 | G1 F9 | M3 S5 G1 X2 M9 | N99999999 X1 | S5.5 | M30X1
     | G68 X0 Y0 R30 | G69 | G92 X3 | G81 Z-1 R1 F100 | G80 | G93 | G94 | G95 | S100 M3 | G41 D1 | G40 | T2 M6 | /X5
     | M99 | X1,R2 | G10 L3 P1 | G10 L50 | G11 | G7 | G16 | G96 S50 | A5 | G5 X1 Y1 I1 J1 P1 Q1 | G84 Z-1 R1 F1
     """.replace("\n", "").split("|")
@@ -140,94 +152,58 @@ def test_runs_are_the_lines_one_by_one(lines: list[str], dialect: str, moved: bo
     assert bits(fast[0]) == bits(slow[0])
 
 
+@settings(max_examples=150, deadline=None)
+@given(
+    st.lists(st.one_of(*[ARC_WORDS] * 5, plain_lines()), max_size=50),
+    st.sampled_from(["fanuc", "haas", "linuxcnc", "grbl"]),
+    st.sampled_from([{}, {"arc_tolerance_mm": 0.0}, {"arc_centres": "absolute"}, {"decimal_point": "increment"}]),
+)
+def test_arcs_in_runs_are_the_arcs_one_by_one(lines: list[str], dialect: str, changes: dict[str, Any]) -> None:
+    given_settings = MachineSettings(start_mm=(0.1, -0.2, 3.3), limits=LIMITS, **changes)
+    text = "".join(["G91 G1 F90\n", *lines, "M30\n"])
+    slow, fast = one_by_one(text, dialect, given_settings), in_runs(text, dialect, given_settings)
+    assert fast == slow
+    assert bits(fast[0]) == bits(slow[0])
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.lists(plain_lines(), min_size=1, max_size=40), st.integers(1, 9), st.booleans(), st.sampled_from([1.0, 25.4]))
 def test_a_run_does_not_depend_on_how_it_is_cut(lines: list[str], most: int, absolute: bool, unit: float) -> None:
     text = "".join(lines).encode()
     first = start_at(absolute=absolute, unit_mm=unit, zero_mm=(0.1, 0.2, 0.3))
-    whole = plain_run(text, 0, first, least_lines=1)
+    rules = PlainRules(**RULES)
+    whole, _ = plain_run(text, 0, first, rules, least_lines=1)
     parts: list[PlainRun] = []
     start, offset = first, 0
-    while (part := plain_run(text, offset, start, max_lines=most, least_lines=1)) is not None:
+    while (part := plain_run(text, offset, start, rules, max_lines=most, least_lines=1)[0]) is not None:
         assert part.begin == offset
         assert 1 <= part.lines <= most
         parts.append(part)
         offset = part.offset
-        start = PlainStart(
-            position_mm=part.position_mm,
-            zero_mm=first.zero_mm,
-            unit_mm=unit,
-            absolute=absolute,
-            rapid=part.rapid_after,
-            feed_mm_min=part.feed_after,
-            line=start.line + part.lines,
-        )
+        start = part.after
     if whole is None:
         assert not parts
         return
-    assert (offset, start.line) == (whole.offset, first.line + whole.lines)
-    assert (start.position_mm, start.rapid, start.feed_mm_min) == (
-        whole.position_mm,
-        whole.rapid_after,
-        whole.feed_after,
-    )
-    for name in ("line", "end_mm", "rapid", "feed_mm_min"):
+    assert (offset, start) == (whole.offset, whole.after)
+    for name in ("block", "line", "end_mm", "code", "feed_mm_min", "centre_mm", "spindle_rpm", "spindle_direction"):
         joined = np.concatenate([getattr(part, name) for part in parts])
         assert joined.tobytes() == getattr(whole, name).tobytes()
-
-
-@settings(max_examples=300, deadline=None)
-@given(st.lists(numbers(30), min_size=1))
-@example(["9007199254740993.0"[-9:], "-0", "-.0", "+0.1", "0.30000000000000004", "999999999.999999999999999"])
-@example(["000000001.00000000000000000000000000001", "-123456789.5000000000000000000000000001", "5e0"[:1]])
-def test_numbers_are_those_of_float(texts: list[str]) -> None:
-    text = "".join(f"x{number}\r\n" for number in texts).encode()
-    words = read_words(text, 0, plain_end(text, 0, 1000))
-    assert words.value.tobytes() == np.array([float(number) for number in texts]).tobytes()
-    assert words.pointed.tolist() == ["." in number for number in texts]
-    assert words.line.tolist() == list(range(len(texts)))
-    assert bytes(words.letter) == b"X" * len(texts)
-
-
-@pytest.mark.parametrize(
-    "line",
-    ["", " ", "\t", "X1", "g01x-1.y+.5 z 3", "N10 G1 X1.5", "F100X2", "X1 G0", "N999999999", "G 1", "\r", "F+1."],
-)
-def test_plain_lines(line: str) -> None:
-    assert plain_end(f"{line}\n".encode(), 0, 9) == len(line) + 1
 
 
 @pytest.mark.parametrize(
     "line",
     [
         *("X", "X.", "X-", "X1.2.3", "X1 2", "X--1", "X1e3", "X1\0", "X1\r\r", "X\r1", "X\u0661", "\u00e9"),
-        *(
-            "G2",
-            "G10",
-            "G1.1",
-            "G1 0",
-            "G1.",
-            "G001",
-            "G00.",
-            "F-1",
-            "X1N2",
-            "N1N2",
-            "N1.",
-            "N-1",
-            "A1",
-            "M3",
-            "S100",
-            "O1",
-            "%",
-        ),
-        *("/X1", "X1(c)", "X1;", "X#1", "X[1]", "X1,R2", "X1234567890", "N1234567890", "X1" + " " * 10),
+        *("G4", "G10", "G1.1", "G1 0", "G1.", "G001", "G00.", "F-1", "S-1", "X1N2", "N1N2", "N1.", "N-1", "A1", "M30"),
+        *("M6", "M0", "M003", "M3.", "P1", "O1", "%", "(abort,x)", "X1( ABORT,)", "X1(", "X1)", "(a(b))", "(\u00e9)"),
+        *("/X1", "X1;X2", "X#1", "X[1]", "X1,R2", "X1234567890", "N1234567890", "X1" + " " * 10, f"({201 * 'c'})"),
         "X1." + "0" * 31,
     ],
 )
 def test_lines_that_are_not_plain(line: str) -> None:
     text = f"X1\n{line}\nX2\n".encode()
     assert plain_end(text, 0, 9) == 3
-    assert plain_run(text, 3, start_at(), least_lines=1) is None
+    assert plain_run(text, 3, start_at(), PlainRules(), least_lines=1) == (None, 0)
 
 
 def test_words_take_effect_in_their_block_and_hold_on() -> None:
@@ -235,9 +211,11 @@ def test_words_take_effect_in_their_block_and_hold_on() -> None:
     assert run is not None
     assert run.line.tolist() == [7, 8, 12]
     assert run.end_mm.tolist() == [[5, 2, 3], [5, 6, 3], [5, 6, 7]]
-    assert run.rapid.tolist() == [False, True, False]
+    assert run.code.tolist() == [1, 0, 1]
     assert run.feed_mm_min.tolist() == [100, 0, 50]
-    assert (run.position_mm, run.rapid_after, run.feed_after, run.label_after) == ((5, 6, 7), False, 50, 30)
+    after = run.after
+    assert (after.position_mm, after.code, after.feed_mm_min, after.line, run.label_after) == ((5, 6, 7), 1, 50, 14, 30)
+    assert run.block.tolist() == [7, 8, 10, 11, 12, 13]
     assert (run.begin, run.offset, run.lines) == (0, 25, 7)
 
 
@@ -267,10 +245,10 @@ def test_a_motion_of_no_length_is_a_motion() -> None:
         ("X1\nG1X3G1\n", {}, 1),
         ("G0X1\nX2\nG1X3\n", {"start": {"feed_mm_min": 0.0}}, 2),
         ("G0X1\nF5\nG1X3\n", {"start": {"feed_mm_min": 0.0}}, 3),
-        ("X1\nG1F50\nX3\n", {}, 1),
+        ("X1\nG1F50\nX3\n", {}, 3),
         ("X1\nF0X3\n", {}, 1),
-        ("X1.\nX3\n", {"increment": True}, 1),
-        ("X1.F3\nN5G0Y3.\n", {"increment": True}, 2),
+        ("X1.\nX3\n", {"rules": {"increment": True}}, 1),
+        ("X1.F3\nN5G0Y3.\n", {"rules": {"increment": True}}, 2),
         ("X1\nX2\nX3\n", {"max_lines": 2}, 2),
         ("X1\nX2", {}, 1),
     ],
@@ -283,13 +261,24 @@ def test_where_a_run_stops(text: str, options: dict[str, Any], lines: int) -> No
     assert text[run.offset - 1] == "\n"
 
 
-@pytest.mark.parametrize("text", ["", "X1", "M3\nX1\n", "X1Y2X3\n", "(c)\n"])
+@pytest.mark.parametrize("text", ["", "X1", "M6\nX1\n", "X1Y2X3\n", "(c\n"])
 def test_no_run(text: str) -> None:
     assert taken(text) is None
 
 
 def test_a_first_line_that_must_be_refused_is_left() -> None:
     assert taken("X1\n", start={"feed_mm_min": 0.0}) is None
+
+
+def test_comments_alone_are_no_blocks() -> None:
+    run = taken("(c)\n\n")
+    assert run is not None
+    assert run.block.size == 0
+
+
+def test_lines_without_words_do_not_start_a_program() -> None:
+    text = "(c)\n" * LEAST_LINES + "%\nO1 X1\nM30\n"
+    assert next(event for event in run(text) if isinstance(event, ProgramStop)).place.line == LEAST_LINES + 3
 
 
 def test_too_few_lines_are_left() -> None:
@@ -301,14 +290,55 @@ def test_too_few_lines_are_left() -> None:
     "text", [b" " * 3_000_000, b"X1" * 1_000_000, b"1" * 3_000_000, b"X" + b"." * 3_000_000, b"\r" * 1_000_000]
 )
 def test_long_lines_come_to_an_end(text: bytes) -> None:
-    assert plain_run(text + b"\n", 0, start_at(), least_lines=1) is None
-    assert plain_run(b"X1\n" + text, 0, start_at(), least_lines=1) is not None
+    assert plain_run(text + b"\n", 0, start_at(), PlainRules(), least_lines=1)[0] is None
+    assert plain_run(b"X1\n" + text, 0, start_at(), PlainRules(), least_lines=1)[0] is not None
+
+
+def test_arcs_have_centres_and_turns() -> None:
+    run = taken("G2X3I1\nG3X5Y4R2\nG1X6\n")
+    assert run is not None
+    assert run.code.tolist() == [2, 3, 1]
+    assert run.centre_mm[:2].tolist() == [[2, 2, 3], [3, 4, 3]]
+    assert np.isnan(run.centre_mm[2]).all()
+
+
+@pytest.mark.parametrize(
+    "arc",
+    ["G2X2", "G2X2I1R1", "G2X2K1", "G2X2I.4", "G2I0", "G2R1", "G2X9R1", "G2X1.0000001I1", "G1X2I1", "G2X1I1R2F0", "G2"],
+)
+def test_arcs_that_are_left(arc: str) -> None:
+    rules = PlainRules(explicit_code_moves=True)
+    run, vain = plain_run(f"X1\n{arc}\nX3\n".encode(), 0, start_at(), rules, least_lines=1)
+    assert run is not None
+    assert (run.lines, vain) == (1, 2)
+
+
+def test_spindle_and_coolant_change_before_or_after_the_motion() -> None:
+    run = taken("S5X1M3\nS6X2\nS6M8\nX3M5\nX4M9\n")
+    assert run is not None
+    assert (run.spindle_rpm.tolist(), run.spindle_direction.tolist()) == ([5, 6, 6, 6], [1, 1, 1, 0])
+    lines = zip(*(column.tolist() for column in run.changes), strict=True)
+    assert list(lines) == [
+        (7, False, False, 5, 1, False, False),
+        (8, False, False, 6, 1, False, False),
+        (9, False, True, 6, 1, False, True),
+        (10, True, False, 6, 0, False, True),
+        (11, True, True, 6, 0, False, False),
+    ]
+    after = run.after
+    assert (after.spindle_rpm, after.spindle_direction, after.mist, after.flood) == (6, 0, False, False)
+
+
+def test_m_codes_that_a_control_does_not_execute_are_left() -> None:
+    run = taken("X1\nM7\nX3\n", rules={"m_codes": frozenset({3})})
+    assert run is not None
+    assert run.lines == 1
 
 
 def test_arrays_are_read_only() -> None:
     run = taken("X1\n")
     assert run is not None
-    for name in ("line", "end_mm", "rapid", "feed_mm_min"):
+    for name in ("block", "line", "end_mm", "code", "feed_mm_min", "centre_mm", "spindle_rpm", "spindle_direction"):
         with pytest.raises(ValueError, match="read-only"):
             getattr(run, name)[0] = 0
 
@@ -316,7 +346,7 @@ def test_arrays_are_read_only() -> None:
 def test_expanded_events() -> None:
     program = program_of("M3\nG1 X1\r\n \r\nF5\r\nx2 \r\n", "t.nc")
     start = start_at(line=2)
-    run = plain_run(program.text, 3, start, least_lines=1)
+    run, _ = plain_run(program.text, 3, start, PlainRules(), least_lines=1)
     assert run is not None
     state, calls = MotionState(tool=3), (Call(program="O1", file="m.nc", line=9),)
     extra = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
