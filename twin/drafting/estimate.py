@@ -37,8 +37,10 @@ _DRAWN_B_S, _CELL_B = 0.4e6, 45.0
 MOST_BYTES, MOST_SAMPLES = 120e6, 8_000_000
 #: Cells along the longest side of the stock as drawn.
 _CELLS = 200.0
-#: Memory of the program itself, and of a column of the slices, bytes.
-_PROGRAM_B, _COLUMN_B = 250e6, 180.0
+#: Bytes of a file besides.
+_FILE_B = 1.5e6
+#: Memory of the program itself (a recording takes 130 MB more), and of a column of the slices that is cut, bytes.
+_PROGRAM_B, _COLUMN_B = 280e6, 180.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,6 +97,7 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
     cells = surface / max(max(x, y, z) / _CELLS, fine.pitch_mm) ** 2
     sizes = {tool.number: tool.diameter_mm for tool in tools}
     slices = np.array([sizes.get(number, 0.0) for number in inside.tool.tolist()]) / fine.pitch_mm
+    swept = float((inside.length_mm * share * slices).sum()) * fine.pitch_mm
     pieces = np.where(inside.arc, np.maximum(1.0, inside.length_mm / _PIECE_MM), 1.0)
     cut_slices = float((pieces * slices).sum())
 
@@ -102,14 +105,14 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
 
     def size(parts: tuple[float, float, float], most_samples: float = math.inf) -> float:
         sample, step, mesh = parts
-        return float(min(samples, most_samples) * sample + steps * step + drawn * mesh)
+        return float(min(samples, most_samples) * sample + steps * step + drawn * mesh) + _FILE_B
 
     return Estimate(
         machine_time_s=float(cuts.feed.time_s.sum()) + cuts.dwell_s + cuts.rapid_mm / _RAPID_MM_MIN * 60.0,
         steps=steps,
         samples=samples,
         computing_s=_SETUP_S + cut_slices * (_FORCED_SLICE_S if forces else _SLICE_S) + samples * _SAMPLE_S,
-        memory_bytes=_PROGRAM_B + surface / fine.pitch_mm**2 * _COLUMN_B,
+        memory_bytes=_PROGRAM_B + min(surface, 2.0 * swept) / fine.pitch_mm**2 * _COLUMN_B,
         archive_bytes=size(_ARCHIVE_B),
         recording_bytes=size(_RECORDING_B, MOST_SAMPLES),
     )

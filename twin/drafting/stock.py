@@ -98,8 +98,11 @@ def top_of_cut(feed: Feed) -> Top:
 
 
 def _top_of_holes(feed: Feed) -> Top:
-    """The top of a program that only plunges."""
-    starts = float(feed.start_mm[feed.first, 2].min()) if feed.first.any() else float(feed.high_mm[:, 2].max())
+    """The top of a program that only plunges: holes, of which a peck begins deep in the hole."""
+    _, hole = np.unique(np.round(feed.end_mm[:, :2], 3), axis=0, return_inverse=True)
+    tops = np.full(int(hole.max()) + 1, -np.inf)
+    np.maximum.at(tops, hole.ravel(), feed.start_mm[:, 2])
+    starts = float(tops.min())
     if float(feed.low_mm[:, 2].min()) < 0.0 <= starts:
         return Top(z_mm=0.0, reason="at Z0: plunges begin above it and end below it")
     return Top(z_mm=starts, reason="where plunges begin")

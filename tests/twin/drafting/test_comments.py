@@ -63,12 +63,14 @@ def test_a_tool_in_words(text: str, unit: Unit, states: dict[str, object]) -> No
     [
         ("WERKZEUG T07 KUGEL D8 R4 L40", 7, 8.0, "ball"),
         ("OUTIL 3 : FRAISE D6", 3, 6.0, "flat"),
+        ("T3 BOHRER 6,8", 3, 6.8, "drill"),
+        ("T7 NO. 7 DRILL", 7, None, "drill"),
         ("TOOL NO:3 NAME:D10R0.5 DIA:10.00 R:0.50 LEN:75.00", 3, 10.0, "bull"),
         ("OP 1:  CONTOUR, TOOL 1: .5 ROUGH ENDMILL", 1, 0.5, "flat"),
         ("EM10R0", None, 10.0, "flat"),
     ],
 )
-def test_numbers_in_comments(text: str, number: int | None, diameter_mm: float, kind: str) -> None:
+def test_numbers_in_comments(text: str, number: int | None, diameter_mm: float | None, kind: str) -> None:
     (found,) = tool_comments(comments(text), "mm")
     assert (found.states.number, found.states.diameter_mm, found.states.kind) == (number, diameter_mm, kind)
 

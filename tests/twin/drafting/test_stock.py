@@ -52,6 +52,7 @@ def levels(*heights: float) -> str:
         ("G0 Z30.\nG1 Z20. F100.\n" + "".join(f"X{5 * k} Z{20 - (k - 5) ** 2 / 5}\n" for k in range(1, 11)), 20.0),
         # holes only
         ("G0 Z2.\nG81 X5. Z-9. R2. F50.\nX9.\nG80\n", 0.0),
+        ("G0 Z2.\nG83 X5. Z-9. R2. Q3. F50.\nX9.\nG80\n", 0.0),
         ("G0 Z22.\nG81 X5. Z9. R22. F50.\nX9.\nG80\n", 22.0),
     ],
 )

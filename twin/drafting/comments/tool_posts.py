@@ -62,7 +62,7 @@ def _statement(groups: Mapping[str, str | None], unit: Unit, text: str) -> ToolS
     def length(name: str) -> float | None:
         return length_mm(given[name], given.get("mark"), unit) if name in given else None
 
-    words = described(given.get("text", ""), unit)
+    words = described(given.get("text", ""), unit, bare_end="number" in given)
     diameter = length("d") or words.diameter_mm
     corner = length("cr") if "cr" in given else length("r")
     return ToolStatement(

@@ -68,6 +68,10 @@ _DIAMETERS = tuple(
 )
 #: A bare number right before a word of the tool's kind.
 _BARE = re.compile(rf"(?<![A-Z0-9.#-])(?P<n>{_NUMBER})\s+(?=[A-Z])(?P<rest>.*)")
+#: The number at the end of a description.
+_BARE_END = re.compile(rf"(?<=[A-Z.])\s+(?P<n>{_NUMBER})\s*$")
+#: Number of a drill's size, which is not its diameter: ``NO. 7``, ``#7``.
+_GAUGE = re.compile(r"(?:(?<![A-Z])NO\b\.?|#)\s*\d+(?![\d.,/])")
 _CORNER = re.compile(
     rf"(?:\b(?:CORNER|TIP|ECK\w*)[ _-]?RAD(?:IUS)?\b\.?|\bCRN?\b\.?|\bRAD(?:IUS)?\b\.?|(?<![A-Z0-9])R)\s*[:=-]?"
     rf"\s*(?P<n>{_NUMBER})\s*(?P<u>{_UNIT})?|(?P<n2>{_NUMBER})\s*(?P<u2>{_UNIT})?\s*(?:CR|RAD|CORNER)\b"
@@ -78,7 +82,7 @@ _TEETH = tuple(
     for pattern in (
         r"(?<![A-Z0-9])Z\s*=?\s*(\d{1,2})(?![\d.,])",
         r"(?:FLUTES|TEETH)\s*[:=]\s*(\d{1,2})",
-        r"(?<![\d.])(\d{1,2})\s*[-_]?\s*(?:FLUTES?|FLT?S?|TEETH|TOOTH|DENTS|ZAHN\w*|SCHNEIDEN)(?![A-Z])",
+        r"(?<![\d.])(\d{1,2})\s*[-_]?\s*(?:FLUTES?|FLT?S?|TEETH|TOOTH|DENTS|ZAHN\w*|SCHN(?:EIDEN)?)(?![A-Z])",
         r"(?<![\d.])(\d{1,2})Z(?![A-Z\d])",
     )
 )
@@ -163,17 +167,20 @@ def rounded(corner_radius_mm: float, diameter_mm: float) -> str:
     return "ball" if corner_radius_mm >= _BALL_PART * diameter_mm else "bull"
 
 
-def described(text: str, unit: Unit) -> ToolStatement:
+def described(text: str, unit: Unit, *, bare_end: bool = False) -> ToolStatement:
     """Values in a description of a tool.
 
     Args:
         text: the description.
         unit: of lengths without a mark.
+        bare_end: a number without a mark at its end is the diameter too: ``DRILL 6.8``.
     """
     upper = text.upper().replace("_", " ")
     kind = kind_in(text)
     corner = _length(_CORNER.search(upper), unit)
     diameter = _diameter(upper, kind, unit)
+    if diameter is None and bare_end and kind is not None and (end := _BARE_END.search(_GAUGE.sub(" ", upper))):
+        diameter = length_mm(end["n"], None, unit) or None
     if kind in (None, "flat") and corner and diameter:
         kind = rounded(corner, diameter)
     helix, angle = _HELIX.search(upper), _ANGLE.search(_HELIX.sub(" ", upper))
@@ -199,6 +206,7 @@ def _diameter(upper: str, kind: str | None, unit: Unit) -> float | None:
         return length_mm(thread[1], "MM", unit)
     for pattern in _TEETH:
         upper = pattern.sub(" ", upper)
+    upper = _GAUGE.sub(" ", upper)
     upper = _CORNER.sub(lambda m: " " if m["n"] or m["n2"] else m[0], _FLUTE_LENGTH.sub(" ", upper))
     for pattern in _DIAMETERS:
         for match in pattern.finditer(upper):
