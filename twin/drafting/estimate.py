@@ -1,7 +1,8 @@
 """Time, memory and file sizes of a replay, estimated before it.
 
 The counts (steps, force samples) follow from the motions below the top of the stock; the costs of one of each are
-those measured with ten programs. Sizes are within a factor of 1.5; times are those of a usual processor.
+those measured with eight programs. Sizes of runs with forces are within a factor of 1.5; times are those of an idle
+processor of the usual kind.
 """
 
 from __future__ import annotations
@@ -31,14 +32,15 @@ _PIECE_MM = 1.0
 #: Bytes of a force sample, of a step, and of a byte of the meshes of the part: in the archive, and in a recording.
 _ARCHIVE_B = (48.0, 130.0, 0.4)
 _RECORDING_B = (21.0, 400.0, 0.8)
-#: Bytes of the meshes for each second of feed motion in the stock, and for each cell of the surface at the end.
-_DRAWN_B_S, _CELL_B = 0.4e6, 45.0
+#: Bytes of the meshes for each second of feed motion in the stock: straight and level with a flat tool, which leaves
+#: large planes, and otherwise; and for each cell of the surface at the end.
+_PLANE_B_S, _DRAWN_B_S, _CELL_B = 0.05e6, 0.6e6, 45.0
 #: Most bytes of the meshes, and most samples in a recording (`twin.simulation.preview`, `twin.sinks.rerun.envelope`).
 MOST_BYTES, MOST_SAMPLES = 120e6, 8_000_000
 #: Cells along the longest side of the stock as drawn.
 _CELLS = 200.0
-#: Bytes of a file besides.
-_FILE_B = 1.5e6
+#: Bytes of an archive and of a recording besides.
+_ARCHIVE_MORE_B, _RECORDING_MORE_B = 0.2e6, 1.5e6
 #: Memory of the program itself (a recording takes 130 MB more), and of a column of the slices that is cut, bytes.
 _PROGRAM_B, _COLUMN_B = 280e6, 180.0
 
@@ -101,11 +103,14 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
     pieces = np.where(inside.arc, np.maximum(1.0, inside.length_mm / _PIECE_MM), 1.0)
     cut_slices = float((pieces * slices).sum())
 
-    drawn = min(float((inside.time_s * share).sum()) * _DRAWN_B_S, MOST_BYTES) + cells * _CELL_B
+    flat = [tool.number for tool in tools if tool.kind in ("flat", "face mill")]
+    planes = inside.level & ~inside.arc & np.isin(inside.tool, flat)
+    drawn = float((inside.time_s * share * np.where(planes, _PLANE_B_S, _DRAWN_B_S)).sum())
+    drawn = min(drawn, MOST_BYTES) + cells * _CELL_B
 
     def size(parts: tuple[float, float, float], most_samples: float = math.inf) -> float:
         sample, step, mesh = parts
-        return float(min(samples, most_samples) * sample + steps * step + drawn * mesh) + _FILE_B
+        return float(min(samples, most_samples) * sample + steps * step + drawn * mesh)
 
     return Estimate(
         machine_time_s=float(cuts.feed.time_s.sum()) + cuts.dwell_s + cuts.rapid_mm / _RAPID_MM_MIN * 60.0,
@@ -113,8 +118,8 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
         samples=samples,
         computing_s=_SETUP_S + cut_slices * (_FORCED_SLICE_S if forces else _SLICE_S) + samples * _SAMPLE_S,
         memory_bytes=_PROGRAM_B + min(surface, 2.0 * swept) / fine.pitch_mm**2 * _COLUMN_B,
-        archive_bytes=size(_ARCHIVE_B),
-        recording_bytes=size(_RECORDING_B, MOST_SAMPLES),
+        archive_bytes=size(_ARCHIVE_B) + _ARCHIVE_MORE_B,
+        recording_bytes=size(_RECORDING_B, MOST_SAMPLES) + _RECORDING_MORE_B,
     )
 
 
