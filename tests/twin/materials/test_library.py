@@ -69,10 +69,10 @@ def test_names_of_standards_are_known(name: str, row: str) -> None:
     assert find_material(name).name == row
 
 
-def test_at_least_20_rows_are_published_tests_and_most_have_a_range() -> None:
+def test_at_least_15_rows_are_published_tests_and_about_half_have_a_range() -> None:
     published = [row for row in ROWS if row.kind == "published test"]
-    assert len(published) >= 20
-    assert sum(row.chip_range_mm is not None for row in published) > len(published) // 2
+    assert len(published) >= 15
+    assert sum(row.chip_range_mm is not None for row in published) >= len(published) // 2
 
 
 def test_an_unknown_name_gets_the_nearest() -> None:
