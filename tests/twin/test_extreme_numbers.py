@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import annotated_types as at
 import pytest
 from pydantic import BaseModel
 
 from tests.support.compared import log_of, run
-from tests.support.job_files import job_data
+from tests.support.job_files import job_data, job_folder
+from tests.support.small_parts import box
+from twin.cam.slices.sections import slice_part
 from twin.comparison.delay import simulated_at_rate
 from twin.drafting.settings import DraftSettings
-from twin.errors import CutsError, JobError, MeasuredError, SettingsError
+from twin.errors import CutsError, JobError, MeasuredError, SettingsError, ToolPathError
 from twin.identification.cuts.load import cuts_from_dict
-from twin.job import job_from_dict
+from twin.job import job_from_dict, load_job
 from twin.measured.filters import Filter, parse_notch
 from twin.measured.settings import CompareSettings
 from twin.measured.spans import parse_offset
 from twin.measured.uniform import resample
+from twin.planning.paths import prepare
 from twin.planning.settings import PathSettings, ReachSettings
 from twin.settings.check import checked
 from twin.settings.keys import bare, fields_of
@@ -76,3 +80,23 @@ def test_the_simulation_at_next_to_no_rate_takes_little_memory() -> None:
 def test_zeros_and_spans_are_finite(text: str) -> None:
     with pytest.raises(MeasuredError, match=r"expected (forces|times) of at most 1e\+09"):
         parse_offset(text)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"overhang_mm": 1e8}, "points of rows; expected at most 1e\\+08"),
+        ({"layers": 10**8}, "points of rows; expected at most 1e\\+08"),
+        ({"strategy": "contour", "axial_depth_mm": 1e-7}, "make 2e\\+07 levels of 1 layers; expected at most 10000"),
+        ({"strategy": "contour", "layers": 10**6}, "levels of 1000000 layers; expected at most 10000"),
+    ],
+)
+def test_paths_without_end_are_refused(values: dict[str, Any], message: str) -> None:
+    part = slice_part(box((0.0, 0.0, -2.0), (6.0, 6.0, 0.0)), 1.0)
+    with pytest.raises(ToolPathError, match=message):
+        prepare(checked(PathSettings, {"strategy": "scan", "tool": "flat 4", "pitch_mm": 1.0} | values, "given"), part)
+
+
+def test_a_pitch_for_a_job_that_was_read_suits_its_tools(tmp_path: Path) -> None:
+    with pytest.raises(JobError, match=r"slice_pitch_mm = 100\.0: expected at most 8, the diameter of tool 1"):
+        load_job(job_folder(tmp_path)).with_simulation(slice_pitch_mm=100.0)

@@ -12,10 +12,12 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import ConfigDict, Field, Strict
 
 from twin.errors import JobError
+from twin.job.limits import PITCH_LIMITS
 from twin.job.stock_keys import Stock, WorkOffset
 from twin.materials import find_material
 from twin.measured.settings import CompareSettings, LogFile
 from twin.settings.check import checked
+from twin.settings.facts import Facts
 from twin.settings.force_on import ForceOn
 from twin.settings.json_schema import toml_schema
 from twin.settings.table import FilePath, Key, Point, Table
@@ -352,10 +354,15 @@ class Job(JobFile):
         """The same job with other values of its ``[simulation]`` table, e.g. ``slice_pitch_mm=0.2``.
 
         Raises:
-            JobError: wrong names or values; the message has every mistake.
+            JobError: wrong names or values, or a pitch that does not suit stock and tools; with every mistake.
         """
         simulation = checked(Simulation, {**self.simulation.model_dump(), **values}, "simulation", JobError)
-        return self.model_copy(update={"simulation": simulation})
+        made = self.model_copy(update={"simulation": simulation})
+        facts = Facts(made.model_dump(include={"simulation", "stock", "tools"}, exclude_none=True), [], JobFile)
+        problems = [str(problem) for rule in PITCH_LIMITS for problem in rule(facts, self.path.parent)]
+        if problems:
+            raise JobError(str(self.path), problems)
+        return made
 
     def with_material(self, name: str) -> Job:
         """The same job with the cutting coefficients of a material for all tools, in place of its own.

@@ -41,6 +41,19 @@ def _stock_extent_mm(facts: Facts) -> Sequence[float] | None:
     return [top - bottom if a == axis else diameter for a in "xyz"]
 
 
+def pitch_below_tools(facts: Facts, _folder: Path) -> Iterator[Problem]:
+    """A tool thinner than the distance of the slices would pass between them."""
+    pitch = facts.get("simulation", "slice_pitch_mm")
+    sizes = [(d, tool.number) for tool in tools_of(facts) if (d := tool.get("diameter_mm")) is not None]
+    if pitch is None or not sizes:
+        return
+    thinnest, number = min(sizes, key=lambda size: size[0])
+    if pitch > thinnest:
+        whose = f"tool {number}" if number is not None else "a tool"
+        expected = f"at most {thinnest:g}, the diameter of {whose}: it would pass between the slices"
+        yield wrong(("simulation", "slice_pitch_mm"), pitch, expected)
+
+
 def slices_fit(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """A pitch whose slices do not fit in memory is a mistake."""
     pitch, extent = facts.get("simulation", "slice_pitch_mm"), _stock_extent_mm(facts)
@@ -114,4 +127,6 @@ def rapids_end(facts: Facts, _folder: Path) -> Iterator[Problem]:
             yield wrong(("machine", "axis_rapid_mm_min", index), rate, f"at least {_LEAST_RAPID_MM_MIN:g}")
 
 
-LIMITS = (numbers_sensible, rapids_end, slices_fit, drawing_fits, steps_countable, edges_fit, edges_divided)
+#: Rules for the slice pitch, with those for tools and stock.
+PITCH_LIMITS = (pitch_below_tools, slices_fit)
+LIMITS = (numbers_sensible, rapids_end, *PITCH_LIMITS, drawing_fits, steps_countable, edges_fit, edges_divided)

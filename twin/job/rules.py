@@ -107,19 +107,6 @@ def first_tool_known(facts: Facts, _folder: Path) -> Iterator[Problem]:
         yield wrong(("program", "tool"), number, f"0 or the number of a tool: {', '.join(map(str, known))}")
 
 
-def pitch_below_tools(facts: Facts, _folder: Path) -> Iterator[Problem]:
-    """A tool thinner than the distance of the slices would pass between them."""
-    pitch = facts.get("simulation", "slice_pitch_mm")
-    sizes = [(d, tool.number) for tool in tools_of(facts) if (d := tool.get("diameter_mm")) is not None]
-    if pitch is None or not sizes:
-        return
-    thinnest, number = min(sizes, key=lambda size: size[0])
-    if pitch > thinnest:
-        whose = f"tool {number}" if number is not None else "a tool"
-        expected = f"at most {thinnest:g}, the diameter of {whose}: it would pass between the slices"
-        yield wrong(("simulation", "slice_pitch_mm"), pitch, expected)
-
-
 def angle_divides_turn(facts: Facts, _folder: Path) -> Iterator[Problem]:
     """Samples are at the same angles in every revolution."""
     angle = facts.get("simulation", "angle_step_deg")
@@ -177,7 +164,6 @@ RULES: tuple[Rule, ...] = (
     tool_numbers_differ,
     first_tool_known,
     tools_are_sound,
-    pitch_below_tools,
     angle_divides_turn,
     laws_are_sound,
     *LIMITS,

@@ -46,6 +46,8 @@ Progress: TypeAlias = Callable[[str, float], None]
 _CHORD_PITCHES = 0.005
 #: Chord error of rows: at most this, mm, or this part of the allowance, whichever is larger.
 _CHORD_MM, _CHORD_ALLOWANCE = 0.0005, 0.05
+#: Most points of all rows of a scan, and most levels, or layers of a level, of contours.
+_MOST_POINTS, _MOST_LEVELS = 1e8, 1e4
 #: Rows start with points a slice pitch apart, but no closer than this part of the ball's or corner's radius: the tool's
 #: own rounding hides finer detail, and points are added where the chord error is too large.
 _POINTS_APART = 0.0125
@@ -121,7 +123,7 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, progress: Pro
         raise ToolPathError(
             f"safe_z_mm = {safe:g}: expected at least {top + settings.clearance_mm:g}, stock top plus clearance"
         )
-    return PlanSetup(
+    made = PlanSetup(
         tool=tool,
         part=sliced,
         sections=_sections(settings, sliced, tool),
@@ -131,6 +133,28 @@ def prepare(settings: PathSettings, part: Path | str | SlicedPart, progress: Pro
         floor_mm=float(box[0, 2]) if settings.floor_z_mm is None else settings.floor_z_mm,
         safe_mm=safe,
     )
+    _check_size(settings, made)
+    return made
+
+
+def _check_size(settings: PathSettings, setup: PlanSetup) -> None:
+    """Refuses paths of more points or levels than fit in memory."""
+    width, length = np.ptp(setup.region_mm, axis=0) + 2.0 * setup.overhang_mm
+    step = max(settings.pitch_mm, _POINTS_APART * setup.tool.corner_radius_mm)
+    if settings.strategy == "scan":
+        points = settings.layers * width * length / (settings.stepover_mm * step)
+        if points > _MOST_POINTS:
+            raise ToolPathError(
+                f"{settings.layers} x {width:g} x {length:g} mm at stepover_mm = {settings.stepover_mm:g} and pitch_mm "
+                f"= {settings.pitch_mm:g} make {points:.3g} points of rows; expected at most {_MOST_POINTS:g}"
+            )
+        return
+    levels = (float(setup.stock_mm[1, 2]) - setup.floor_mm) / settings.axial_depth_mm
+    if max(levels, settings.layers) > _MOST_LEVELS:
+        raise ToolPathError(
+            f"axial_depth_mm = {settings.axial_depth_mm:g} and layers = {settings.layers} make {levels:.3g} levels of "
+            f"{settings.layers} layers; expected at most {_MOST_LEVELS:g} of either"
+        )
 
 
 def _sliced(mesh: Solid, pitch_mm: float, tool: ToolShape) -> SlicedPart:
