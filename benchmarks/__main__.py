@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 STAGES = (
+    "real",
     "speed",
     "surface",
     "replay",

@@ -92,8 +92,17 @@ def section_nodes(body: BodyShape, motion: Motion, planes: Planes, tops: Tops, s
 
 @helper
 def _same_as_before(body: BodyShape, motion: Motion, planes: Planes, w: float) -> bool:
-    """Whether a plane's section is that of the plane before: the whole tool passes straight through both."""
-    if planes.horizontal or motion.du != 0.0 or motion.dv != 0.0:
+    """Whether a plane's section is that of the plane before: the whole tool passes straight through both.
+
+    Horizontal planes: both meet the cylindrical wall all the time.
+    """
+    tool = body.meridian
+    if planes.horizontal:
+        lowest_base = motion.w - body.drop + min(0.0, motion.dw)
+        highest_base = motion.w - body.drop + max(0.0, motion.dw)
+        wall_from = highest_base + tool.arc_height + SAME_SECTION * tool.radius
+        return tool.tangent == 0.0 and w - planes.pitch >= wall_from and w <= lowest_base + tool.height
+    if motion.du != 0.0 or motion.dv != 0.0:
         return False
     passed_from = min(motion.w, motion.w + motion.dw) + body.meridian.radius
     passed_to = max(motion.w, motion.w + motion.dw) - body.meridian.radius

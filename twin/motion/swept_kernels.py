@@ -16,10 +16,19 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.jit import helper, njit
 from twin.tools.meridian import Meridian
-from twin.tools.meridian_kernels import is_ball, is_flat, profile_height, profile_radius, profile_slope, resting_offset
+from twin.tools.meridian_kernels import (
+    farthest_height,
+    is_ball,
+    is_flat,
+    profile_height,
+    profile_radius,
+    profile_slope,
+    profile_spread,
+    resting_offset,
+)
 
-_GOLDEN = 0.6180339887498949
-_SEARCH_STEPS = 42
+#: Most steps of a search, every how many a bracket is halved, and the part of its first width at which it ends.
+_SEARCH_STEPS, _BISECT_EACH, _SEARCHED = 80, 3, 1e-7
 #: A point nearer to the axis than this part of the flat bottom's radius is on it.
 _ON_BOTTOM = 1.0 - 1e-12
 _RADIUS = Meridian._fields.index("radius")
@@ -186,54 +195,54 @@ def highest(body: BodyShape, motion: Motion, w: float, u: float) -> float:
 def _half_chord_by_search(tool: Meridian, disc: Motion, u: float, ta: float, tb: float) -> float:
     """Maximum over t in [ta, tb] of v(t) + sqrt(r(w(t))^2 - (u - u(t))^2), -inf where no disc reaches u.
 
-    The half chord is concave in t: find where the disc reaches farthest over u, then both ends of the interval in
-    which it reaches at all, then the maximum inside.
+    The times at which a disc reaches u are an interval, and the half chord is concave in it. So there is one time
+    before which `_trend` is positive, and after which it is negative: found by secant steps kept in a bracket.
 
     Args:
         disc: the section's centre; w is its height above the tool's lowest point.
     """
-    top = _farthest_reach(tool, disc, u, ta, tb)
-    if _reach_over(tool, disc, u, top) < 0.0:
-        for t in (ta, tb):
-            if _reach_over(tool, disc, u, t) >= 0.0:
-                top = t
-        if _reach_over(tool, disc, u, top) < 0.0:
-            return -math.inf
-    first = _edge_of_reach(tool, disc, u, top, ta)
-    last = _edge_of_reach(tool, disc, u, top, tb)
-    best = -math.inf
-    a = first
-    b = last
-    for _ in range(_SEARCH_STEPS):
-        x0 = b - _GOLDEN * (b - a)
-        x1 = a + _GOLDEN * (b - a)
-        f0 = _half_chord_end(tool, disc, u, x0)
-        f1 = _half_chord_end(tool, disc, u, x1)
-        best = max(best, f0, f1)
-        if f0 > f1:
-            b = x1
+    a, b = ta, tb
+    at_a, a_reaches = _trend(tool, disc, u, a)
+    at_b, b_reaches = _trend(tool, disc, u, b)
+    if at_a <= 0.0:
+        return _half_chord_end(tool, disc, u, a) if a_reaches else -math.inf
+    if at_b >= 0.0:
+        return _half_chord_end(tool, disc, u, b) if b_reaches else -math.inf
+    best, side_moved = -math.inf, 0
+    for step in range(_SEARCH_STEPS):
+        t = 0.5 * (a + b)
+        if a_reaches and b_reaches and step % _BISECT_EACH:
+            t = (a * at_b - b * at_a) / (at_b - at_a)
+        value, reaches = _trend(tool, disc, u, t)
+        if reaches:
+            best = max(best, _half_chord_end(tool, disc, u, t))
+        if value > 0.0:
+            a, at_a, a_reaches = t, value, reaches
+            at_b = 0.5 * at_b if side_moved == 1 else at_b
+            side_moved = 1
         else:
-            a = x0
-    return max(best, _half_chord_end(tool, disc, u, first), _half_chord_end(tool, disc, u, last))
+            b, at_b, b_reaches = t, value, reaches
+            at_a = 0.5 * at_a if side_moved == -1 else at_a
+            side_moved = -1
+        if (b - a <= _SEARCHED * (tb - ta) and best > -math.inf) or value == 0.0:
+            break
+    return best
 
 
 @helper
-def _farthest_reach(tool: Meridian, disc: Motion, u: float, a: float, b: float) -> float:
-    """The t in [a, b] at which a section reaches farthest over u, by golden section."""
-    for _ in range(_SEARCH_STEPS):
-        x0 = b - _GOLDEN * (b - a)
-        x1 = a + _GOLDEN * (b - a)
-        if _reach_over(tool, disc, u, x0) > _reach_over(tool, disc, u, x1):
-            b = x1
-        else:
-            a = x0
-    return 0.5 * (a + b)
+def _trend(tool: Meridian, disc: Motion, u: float, t: float) -> tuple[float, bool]:
+    """A number with the sign of the half chord's derivative, and whether the section reaches over the line u.
 
-
-@helper
-def _reach_over(tool: Meridian, disc: Motion, u: float, t: float) -> float:
-    """How far a section at height w reaches over the line u; negative where it does not."""
-    return profile_radius(tool, disc.w + disc.dw * t) - abs(u - disc.u - disc.du * t)
+    Where it does not, the number is the derivative of how far it reaches.
+    """
+    height = disc.w + disc.dw * t
+    radius = profile_radius(tool, height)
+    spread = disc.dw * profile_spread(tool, height)
+    off = u - disc.u - disc.du * t
+    rest = radius * radius - off * off
+    if rest >= 0.0:
+        return disc.dv * math.sqrt(rest) + radius * spread + off * disc.du, True
+    return spread + math.copysign(disc.du, off * disc.du), False
 
 
 @helper
@@ -242,22 +251,6 @@ def _half_chord_end(tool: Meridian, disc: Motion, u: float, t: float) -> float:
     radius = profile_radius(tool, disc.w + disc.dw * t)
     off = u - disc.u - disc.du * t
     return disc.v + disc.dv * t + math.sqrt(max(0.0, radius * radius - off * off))
-
-
-@helper
-def _edge_of_reach(tool: Meridian, disc: Motion, u: float, inside: float, end: float) -> float:
-    """The t nearest to ``end`` at which the section still reaches over u, from one at which it does."""
-    if _reach_over(tool, disc, u, end) >= 0.0:
-        return end
-    a = inside
-    b = end
-    for _ in range(_SEARCH_STEPS):
-        middle = 0.5 * (a + b)
-        if _reach_over(tool, disc, u, middle) >= 0.0:
-            a = middle
-        else:
-            b = middle
-    return a
 
 
 @helper
@@ -290,20 +283,23 @@ def side(body: BodyShape, motion: Motion, z: float, u: float) -> float:
     if motion.du == 0.0 and motion.dv == 0.0:
         radius = profile_radius(tool, max(h0 - dz * ta, h0 - dz * tb))
         return disc_upper(motion.u, 0.0, motion.v, 0.0, radius, u, 0.0, 1.0)
-    if is_ball(tool) or is_flat(tool):
-        return _side_of_ball_or_flat(tool, motion, base, z, u)
+    if tool.tangent == 0.0:
+        return _side_of_cylinder(tool, motion, base, z, u)
     return _half_chord_by_search(tool, Motion(h0, -dz, motion.u, motion.du, motion.v, motion.dv), u, ta, tb)
 
 
 @helper
-def _side_of_ball_or_flat(tool: Meridian, motion: Motion, base: float, z: float, u: float) -> float:
-    """As `side` for a ball or flat tool, whose lowest point begins at the height ``base``."""
+def _side_of_cylinder(tool: Meridian, motion: Motion, base: float, z: float, u: float) -> float:
+    """As `side` for a tool with a cylindrical wall, whose lowest point begins at the height ``base``."""
     value = -math.inf
     if tool.corner > 0.0:
         first, last = _times_at_height(base, motion.dw, z, 0.0, tool.arc_height)
-        if first <= last:
+        if first <= last and is_ball(tool):
             centre = Motion(motion.u, motion.du, base + tool.corner, motion.dw, motion.v, motion.dv)
             value = sphere_upper(centre, tool.corner, u, z, first, last)
+        elif first <= last:
+            disc = Motion(z - base, -motion.dw, motion.u, motion.du, motion.v, motion.dv)
+            value = _half_chord_by_search(tool, disc, u, first, last)
     first, last = _times_at_height(base, motion.dw, z, tool.arc_height, tool.height)
     if first <= last:
         wall = disc_upper(motion.u, motion.du, motion.v, motion.dv, tool.radius, u, first, last)
@@ -326,17 +322,9 @@ def reach(body: BodyShape, motion: Motion, z: float) -> float:
     best = max(_reach_at(tool, motion, z - base, a), _reach_at(tool, motion, z - base, b))
     if motion.dw == 0.0:
         return best
-    for _ in range(_SEARCH_STEPS):
-        x0 = b - _GOLDEN * (b - a)
-        x1 = a + _GOLDEN * (b - a)
-        f0 = _reach_at(tool, motion, z - base, x0)
-        f1 = _reach_at(tool, motion, z - base, x1)
-        best = max(best, f0, f1)
-        if f0 > f1:
-            b = x1
-        else:
-            a = x0
-    return best
+    height = farthest_height(tool, motion.du / motion.dw)
+    t = min(max((z - base - height) / motion.dw, a), b)
+    return max(best, _reach_at(tool, motion, z - base, t))
 
 
 @helper

@@ -10,6 +10,8 @@ from twin.tools.meridian import Meridian
 
 #: Largest number of Newton steps, and the relative change at which they end.
 _MOST_STEPS, _CONVERGED = 80, 1e-9
+#: Least square of a radius in a corner, mm2, where its derivative is computed.
+_LEAST = 1e-24
 
 
 @helper
@@ -119,6 +121,23 @@ def profile_radius(tool: Meridian, height: float) -> float:
         return tool.arc_radius + (height - tool.arc_height) * tool.tangent
     d = tool.corner - height
     return tool.disc + math.sqrt(max(0.0, tool.corner * tool.corner - d * d))
+
+
+@helper
+def profile_spread(tool: Meridian, height: float) -> float:
+    """Derivative of `profile_radius`; large, not infinite, at the lowest point of a corner."""
+    if height >= tool.arc_height:
+        return tool.tangent
+    d = tool.corner - height
+    return max(tool.tangent, d / math.sqrt(max(_LEAST, tool.corner * tool.corner - d * d)))
+
+
+@helper
+def farthest_height(tool: Meridian, slope: float) -> float:
+    """Height at which `profile_radius` less ``slope`` times the height is largest, at most the tool's height."""
+    if slope <= tool.tangent:
+        return tool.height
+    return tool.corner * (1.0 - slope / math.sqrt(1.0 + slope * slope))
 
 
 @njit

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -42,6 +43,15 @@ def in_sweep(shape: ToolShape, start: FloatArray, end: FloatArray, points: Float
     found = np.all((points >= low) & (points <= high), axis=1)
     found[found] = in_tool(shape, tips, points[found], margin).any(axis=1)
     return found
+
+
+def test_a_steep_sharp_cone_is_cut_to_both_ends_of_its_level_sections() -> None:
+    body = Body.of(tool_shape("taper", 6.0, 12.0, taper_deg=20.0), chord_mm=CHORD_MM)
+    start = np.array([-2.671039634602913, -1.644539032517425, 1.9505112425555309])
+    sweep = Sweep(body, start, start + (-5.407184761472628, -0.447330104604893, -47.604539067334755))
+    strips = sweep.strips(2, -28.0, 0.1, 12, CHORD_MM)
+    widths = [float(np.ptp(strips.nodes[a:b, 0])) for a, b in pairwise(strips.offsets.tolist())]
+    assert np.ptp(widths) < 1e-6  # all of them hold the largest section of the cone
 
 
 @pytest.mark.parametrize("move", MOVES)
