@@ -48,7 +48,8 @@ def in_sweep(shape: ToolShape, start: FloatArray, end: FloatArray, points: Float
 def test_a_steep_sharp_cone_is_cut_to_both_ends_of_its_level_sections() -> None:
     body = Body.of(tool_shape("taper", 6.0, 12.0, taper_deg=20.0), chord_mm=CHORD_MM)
     start = np.array([-2.671039634602913, -1.644539032517425, 1.9505112425555309])
-    sweep = Sweep(body, start, start + (-5.407184761472628, -0.447330104604893, -47.604539067334755))
+    end = start + np.array([-5.407184761472628, -0.447330104604893, -47.604539067334755])
+    sweep = Sweep(body, start, end)
     strips = sweep.strips(2, -28.0, 0.1, 12, CHORD_MM)
     widths = [float(np.ptp(strips.nodes[a:b, 0])) for a, b in pairwise(strips.offsets.tolist())]
     assert np.ptp(widths) < 1e-6  # all of them hold the largest section of the cone
