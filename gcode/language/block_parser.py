@@ -335,6 +335,10 @@ def _unexpected(place: Place, source: Source, position: int) -> GcodeError:
     if character in "#[=<":
         return _macro(place, column, character, source.language)
     problem = f"unexpected {character!r}"
+    if re.match(r"\d,\d", place.text[max(column - 2, 0) :]):
+        return GcodeError(
+            _at(place, column), "unexpected-character", problem, "a decimal point, which controls require"
+        )
     return GcodeError(_at(place, column), "unexpected-character", problem, "a letter and its number, or a comment")
 
 

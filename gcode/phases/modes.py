@@ -44,9 +44,10 @@ def whole_number(block: ParsedBlock, word: Word) -> int:
         GcodeError: where it is negative or has a fraction.
     """
     if word.value < 0.0 or word.value != int(word.value):
-        raise block.error(
-            word, "bad-value", f"{word.text} is not a whole number of 0 or more", f"{word.letter}0, 1, 2..."
-        )
+        expected = f"{word.letter}0, 1, 2..."
+        if (word.letter, word.value) == ("T", -1.0):
+            expected += "; T-1 puts the tool back on a Carvera only, and its block can be deleted"
+        raise block.error(word, "bad-value", f"{word.text} is not a whole number of 0 or more", expected)
     return int(word.value)
 
 

@@ -87,3 +87,10 @@ def test_a_file_name_alone_is_a_hint_only_where_the_dialect_does_not_use_it() ->
 
 def test_a_mistake_is_not_another_dialect() -> None:
     assert examine(program("G777 X1\nM123"))[1] == []
+
+
+def test_a_control_that_was_made_from_linuxcnc_is_named_by_its_comment() -> None:
+    text = "(Tormach PathPilot post)\nG21 G90 G64 G50 G91.1\nG30\nT1 G43 H1 M6\nG0 X1.\nM30\n"
+    found = likeliest(program(text))
+    assert (found.dialect.name, found.reason.rpartition(", and ")[2]) == ("linuxcnc", "a comment names PathPilot")
+    assert examine(program(text), dialect="linuxcnc")[0] == []

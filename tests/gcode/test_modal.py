@@ -113,7 +113,7 @@ def test_two_codes_of_a_group_are_refused(dialect: Dialect) -> None:
         ("G0 X1 I5", "t.nc:1:7: I5 is not used by any code in this block or by the active motion code [unused-word]"),
         ("G4 X1 Y1", "t.nc:1:7: Y1 is not used by any code in this block or by the active motion code [unused-word]"),
         ("N1.5", "t.nc:1:1: N1.5 is not a whole number of 0 or more; expected N0, 1, 2... [bad-value]"),
-        ("T-1", "t.nc:1:1: T-1 is not a whole number of 0 or more; expected T0, 1, 2... [bad-value]"),
+        ("T-2", "t.nc:1:1: T-2 is not a whole number of 0 or more; expected T0, 1, 2... [bad-value]"),
         ("F-1", "t.nc:1:1: F-1 is negative; expected F of 0 or more [bad-value]"),
         ("S-1", "t.nc:1:1: S-1 is negative; expected S of 0 or more [bad-value]"),
         ("O1\nO2", "t.nc:2:1: O2 begins another program before the end of O1; expected M2, M30 or % before it "

@@ -102,6 +102,7 @@ MACRO = (
         ("X10000000000", "t.nc:7:1: X10000000000 is out of range; "
          "expected an absolute value of at most 1000000000 [number-too-large]"),
         ("G1 (open", "t.nc:7:4: a comment that is not closed; expected ) [unclosed-comment]"),
+        ("X12,5", "t.nc:7:4: unexpected ','; expected a decimal point, which controls require [unexpected-character]"),
         ("G1 X1)", "t.nc:7:6: unexpected ')'; expected a letter and its number, or a comment [unexpected-character]"),
         ("G1 *", "t.nc:7:4: unexpected '*'; expected a letter and its number, or a comment [unexpected-character]"),
         ("G1 X²", "t.nc:7:4: X has no number; expected X and a number [missing-number]"),
