@@ -25,7 +25,7 @@ class AxisErrors:
         rms_by_rms: error's RMS by the measured RMS.
         rms_by_peak: error's RMS by the measured peak.
         max_by_peak: largest error by the measured peak.
-        ratio_of_means, ratio_of_peaks: simulated by measured.
+        ratio_of_means, ratio_of_peaks: simulated divided by measured.
         correlation: of the two waveforms, None where one is constant.
     """
 

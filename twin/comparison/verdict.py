@@ -17,7 +17,7 @@ def verdict(found: Comparison) -> str:
     totals = [w.errors[-1] for w in found.windows]
     name = "force" if totals[0].axis == "resultant" else f"F{totals[0].axis}"
     where = "" if len(totals) == 1 else f"Over {len(totals)} windows, "
-    sentence = f"{where}simulated by measured: mean {name} {_changes(e.ratio_of_means for e in totals)}, "
+    sentence = f"{where}simulated relative to measured: mean {name} {_changes(e.ratio_of_means for e in totals)}, "
     sentence += f"peak {_changes(e.ratio_of_peaks for e in totals)}; RMS error {_shares(totals)} of the measured RMS"
     text = f"{sentence[0].upper()}{sentence[1:]}{_worst(found.windows)}."
     if found.warnings:

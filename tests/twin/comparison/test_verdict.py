@@ -24,7 +24,8 @@ def compared(factors: tuple[float, float, float] = (1.0, 1.0, 1.0), *windows: tu
 
 def test_equal_forces() -> None:
     text = verdict(compared())
-    assert text.startswith("Simulated by measured: mean force ±0.0 %, peak ±0.0 %; RMS error 0.0 % of the measured RMS")
+    begins = "Simulated relative to measured: mean force ±0.0 %, peak ±0.0 %; RMS error 0.0 % of the measured RMS"
+    assert text.startswith(begins)
     assert "warning" not in text
 
 
@@ -37,7 +38,7 @@ def test_the_worst_axis_and_window_are_named() -> None:
     found = compared((1.0, 2.0, 1.0), (3.0, 3.2), (5.0, 5.2))
     text = verdict(found)
     worst = max(found.windows, key=lambda w: w.of("y").rms_n)
-    assert text.startswith("Over 2 windows, simulated by measured: mean force −")
+    assert text.startswith("Over 2 windows, simulated relative to measured: mean force −")
     assert (
         f"largest in Fy in {worst.span_s[0]:.2f}–{worst.span_s[1]:.2f} s: {worst.of('y').rms_n:.3g} N, 50.0 %" in text
     )
