@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from twin.errors import MeasuredError
 from twin.measured.log import AXES
+from twin.measured.table import few
 from twin.measured.units import split_unit
 
 #: Factor and column.
@@ -83,7 +85,7 @@ class AxisMap:
         for axis, text in self.entries:
             found = _sum(text, names)
             if found is None:
-                known = ", ".join(dict.fromkeys(names.values()))
+                known = few(list(dict.fromkeys(names.values())))
                 raise MeasuredError(f"axis map {str(self)!r}: no column {text.lstrip('+-')!r}; columns are {known}")
             made[axis] = found
         return made
@@ -95,8 +97,9 @@ def aliases(columns: Iterable[str]) -> dict[str, str]:
     made: dict[str, str] = {}
     bases = [split_unit(n)[0] for n in names]
     for keys in (names, bases, list(map(_key, names)), list(map(_key, bases))):
+        counts = Counter(keys)
         for name, key in zip(names, keys, strict=True):
-            if keys.count(key) == 1:
+            if counts[key] == 1:
                 made.setdefault(key, name)
     for index, name in enumerate(names):
         made.setdefault(f"#{index + 1}", name)

@@ -10,6 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from twin.arrays import FloatArray, frozen
+from twin.measured.table import few
 from twin.settings.force_on import ForceOn
 
 #: First and last moment that a gap lies between, s.
@@ -134,7 +135,7 @@ class ForceLog:
 
 def listed(names: Sequence[str], not_read: Sequence[str]) -> str:
     """Columns for a message, also those that were not read."""
-    return (", ".join(names) or "none") + (f"; not read: {', '.join(not_read)}" if not_read else "")
+    return (few(names) or "none") + (f"; not read: {few(not_read)}" if not_read else "")
 
 
 def gaps_of(t_s: FloatArray, rate_hz: float) -> tuple[Gap, ...]:

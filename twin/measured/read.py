@@ -11,7 +11,7 @@ from twin.errors import MeasuredError
 from twin.measured.formats.isolated import isolated
 from twin.measured.log import RawLog
 from twin.measured.settings import AS_IN_FILE, LogReading
-from twin.measured.table import Table
+from twin.measured.table import Table, few
 from twin.measured.time_column import raw_log
 
 _MCAP_MAGIC = b"\x89MCAP"
@@ -19,6 +19,8 @@ _PARQUET_MAGIC = b"PAR1"
 _TDMS_MAGIC = b"TDSm"
 _MATLAB_MAGIC = b"MATLAB "
 _ZIP_MAGIC = b"PK\x03\x04"
+#: A table with more columns is not a log of forces.
+_MOST_COLUMNS = 5000
 
 
 def read_log(path: str | PathLike[str], reading: LogReading = AS_IN_FILE) -> RawLog:
@@ -38,6 +40,8 @@ def read_log(path: str | PathLike[str], reading: LogReading = AS_IN_FILE) -> Raw
         table = _read(path, reading)
     except OSError as error:
         raise MeasuredError(f"{path}: cannot be read: {(error.strerror or str(error)).lower()}") from error
+    if len(table.names) > _MOST_COLUMNS:
+        raise MeasuredError(f"{path}: {len(table.names)} columns, expected at most {_MOST_COLUMNS}")
     return raw_log(path, table, reading)
 
 
@@ -83,6 +87,6 @@ def _renamed(path: Path, read: Table, columns: Sequence[str]) -> Table:
     """The table with the user's names."""
     if len(columns) != len(read.names):
         raise MeasuredError(
-            f"{path}: {len(read.names)} columns ({', '.join(read.names)}), --columns gives {len(columns)} names"
+            f"{path}: {len(read.names)} columns ({few(read.names)}), --columns gives {len(columns)} names"
         )
     return replace(read, names=tuple(columns))

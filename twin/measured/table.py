@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +12,9 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.errors import MeasuredError
+
+#: Most names that a message lists.
+_MOST_NAMED = 100
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -43,13 +48,21 @@ class Table:
     not_read: tuple[str, ...] = field(default=())
 
 
+def few(names: Sequence[str], mark: str = ", ") -> str:
+    """Names for a message: all, or the first of very many and the number of the others."""
+    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
+    return mark.join(names[:_MOST_NAMED]) + more
+
+
 def distinct(names: Sequence[str]) -> tuple[str, ...]:
     """Names that differ: a second ``Fx`` becomes ``Fx (2)``, an empty one ``column3``."""
     made: list[str] = []
+    counts: Counter[str] = Counter()
     for index, name in enumerate(names):
         base = name or f"column{index + 1}"
-        count = sum(m == base or m.startswith(f"{base} (") for m in made)
+        count = counts[base]
         made.append(base if not count else f"{base} ({count + 1})")
+        counts.update([made[-1], *(made[-1][: m.start()] for m in re.finditer(r" \(", made[-1]))])
     return tuple(made)
 
 

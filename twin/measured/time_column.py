@@ -24,6 +24,8 @@ _EPOCH_S = (6e8, 4e9)
 _DAY_NUMBERS = ((30_000.0, 60_000.0), (720_000.0, 760_000.0))
 #: Over midnight a step may differ from the usual one by this many of it, or by this much.
 _DAY_JUMP, _DAY_JUMP_S = 3.0, 1e-3
+#: An example of names for columns ends in points where it would have this many further ones.
+_MOST_IN_EXAMPLE = 20
 #: Times that repeat must step this many times at least before a rate can be counted.
 _LEAST_STEPS = 2
 #: Rates outside are damage.
@@ -157,7 +159,8 @@ def _counted(
 
 def _example(table: Table) -> str:
     names = ["t_s", "Fx_N", "Fy_N", "Fz_N"][: len(table.names)]
-    return ",".join([*names, *table.names[len(names) :]])
+    rest = table.names[len(names) :]
+    return ",".join([*names, *(rest if len(rest) < _MOST_IN_EXAMPLE else ("...",))])
 
 
 def _from_column(

@@ -205,3 +205,32 @@ def test_spindle_angle_and_trigger_are_found(tmp_path: Path) -> None:
     assert log.spindle_angle_rad is not None and log.trigger_s is not None
     np.testing.assert_allclose(np.diff(log.spindle_angle_rad), 2 * np.pi * 20.0 / 1000.0, rtol=1e-6)
     np.testing.assert_allclose(np.diff(log.trigger_s), 0.05, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ([",".join(["1.5"] * 20_000)] * 3, r"log.txt:2: a line of 79999 characters, expected a row of at most 32768"),
+        (["0,1,2,3", "1,2,3,4" + "," * 40_000 + "5"], r"log.txt:3: a line of 40008 characters"),
+    ],
+)
+def test_very_long_rows_are_refused_at_once(lines: list[str], message: str, tmp_path: Path) -> None:
+    with pytest.raises(MeasuredError, match=message):
+        read(tmp_path, "\n".join(["t,Fx,Fy,Fz", *lines]))
+
+
+def test_very_many_columns_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("twin.measured.read._MOST_COLUMNS", 3)
+    with pytest.raises(MeasuredError, match=r"log.txt: 4 columns, expected at most 3"):
+        read(tmp_path, "t,Fx,Fy,Fz\n" + body())
+
+
+def test_messages_list_no_more_than_a_hundred_columns(tmp_path: Path) -> None:
+    row = ",".join(["0.5"] * 300)
+    with pytest.raises(MeasuredError, match=r"c99 and 200 more; give the sampling rate") as error:
+        read(tmp_path, "\n".join([",".join(f"c{i}" for i in range(300)), row, row]))
+    assert len(str(error.value)) < 1000
+
+
+def test_a_long_line_above_the_rows_does_not_matter(tmp_path: Path) -> None:
+    assert len(read(tmp_path, f"# {'x' * 100_000}\nt,Fx,Fy,Fz\n{body()}").t_s) > 2

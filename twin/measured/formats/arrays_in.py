@@ -13,7 +13,7 @@ import numpy as np
 from twin.errors import MeasuredError
 from twin.measured.axes import guess_map
 from twin.measured.formats.one_clock import Named, on_one_clock
-from twin.measured.table import Table, table
+from twin.measured.table import Table, few, table
 from twin.measured.units import TIME_NAME, find_unit, split_unit
 
 #: A matrix with more columns than this is not a log.
@@ -48,7 +48,7 @@ def columns_table(
     arrays = _in_group(path, arrays, group)
     columns = [column for a in arrays for column in _columns(a)]
     if not columns:
-        other = f"; not read: {'; '.join(refused)}" if refused else ""
+        other = f"; not read: {few(refused, '; ')}" if refused else ""
         raise MeasuredError(f"{path}: no arrays of numbers found, expected a time and forces ({format_name}){other}")
     paths = [c.name for c in columns]
     columns = _short_names(columns)
@@ -64,7 +64,7 @@ def columns_table(
     left += aligned.not_read
     notes = [f"of another length, not read: {', '.join(left[:6])}"] if left and not aligned.not_read else []
     if refused:
-        notes.append(f"not read: {'; '.join(refused)}")
+        notes.append(f"not read: {few(refused, '; ')}")
     rate_hz, start_s = clock_of(_near(scalars, origin[needed[-1]]))
     return table(
         path,

@@ -9,7 +9,7 @@ import numpy as np
 from twin.archive.foreign import is_run, read_numbers
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError, MeasuredError
-from twin.measured.table import Table, table
+from twin.measured.table import Table, few, table
 
 
 def read_mcap(path: Path, group: str | None = None) -> Table:
@@ -27,7 +27,7 @@ def read_mcap(path: Path, group: str | None = None) -> Table:
         found = read_numbers(path, group)
     except ArchiveError as error:
         raise MeasuredError(str(error)) from error
-    notes = [*found.notes, *([f"fields not read: {', '.join(found.not_read)}"] if found.not_read else [])]
+    notes = [*found.notes, *([f"fields not read: {few(found.not_read)}"] if found.not_read else [])]
     rows = [(name, "", values) for name, values in found.columns.items()]
     return table(path, f"MCAP, topic {found.topic}", rows, row_word="message", notes=notes, not_read=found.not_read)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.errors import MeasuredError
 from twin.measured.formats.bounds import check_size
-from twin.measured.table import Table, table
+from twin.measured.table import Table, few, table
 from twin.measured.units import LOGICAL
 
 
@@ -38,7 +38,7 @@ def read_parquet(path: Path) -> Table:
             left.append(f"{name} ({field.type})")
         else:
             columns.append((name, unit or _unit(field.metadata), values))
-    notes = [f"columns not read: {', '.join(left)}"] if left else []
+    notes = [f"columns not read: {few(left)}"] if left else []
     rate = (read.schema.metadata or {}).get(b"rate_hz")
     return table(path, "Parquet", columns, rate_hz=_number(rate), row_word="row", notes=notes, not_read=left)
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from twin.arrays import FloatArray
 from twin.errors import MeasuredError
+from twin.measured.table import few
 from twin.measured.text.clocks import ClockKind, Moment, moment, seconds_of
 from twin.measured.text.header import Header
 from twin.measured.text.layout import Layout, fields_of
@@ -89,7 +90,7 @@ class Body:
         notes = []
         names = [n for n, kind in zip(self.header.names, self.layout.kinds, strict=True) if kind == "text"]
         if names:
-            notes.append(f"columns of text not read: {', '.join(names)}")
+            notes.append(f"columns of text not read: {few(names)}")
         for lines, what in ((self._repeated, "repeated header"), (self._remarks, "text after the last column")):
             if lines:
                 more = ", ..." if lines[_MOST_LISTED:] else ""

@@ -16,6 +16,8 @@ from twin.measured.text.marks import Marks, settled
 #: Delimiters that are tried, None for any white space; commas followed by a blank may occur with decimal commas.
 _DELIMITERS = ("\t", ";", "|", ",", None)
 _TRIED_LINES = 400
+#: Lines that are long are tried up to about this many characters, but at least some of them.
+_TRIED_CHARACTERS, _LEAST_LINES = 400_000, 20
 #: A layout of plain numbers is taken without further trials when this share of the lines below its first row fits.
 _ENOUGH = 0.9
 #: A column is text when at least this share of its fields is neither a number nor empty.
@@ -262,7 +264,8 @@ def _first_row(lines: Sequence[str], layout: Layout) -> int:
 
 def _sample(lines: Sequence[str]) -> list[str]:
     """The first lines, where the header is, and some from the middle and the end."""
-    half = _TRIED_LINES // 2
+    usual = max(1, sum(map(len, lines[:_LEAST_LINES])) // _LEAST_LINES)
+    half = min(max(_TRIED_CHARACTERS // usual, _LEAST_LINES), _TRIED_LINES) // 2
     middle = max(half, len(lines) // 2)
     end = max(middle + half, len(lines) - half // 4)
     return [*lines[:half], *lines[middle : middle + half], *lines[end:]]

@@ -17,6 +17,9 @@ from twin.measured.text.header import Header, find_header, stated_rate_hz
 from twin.measured.text.layout import ColumnKind, Layout, fields_of, find_layout, is_settled, number_rows
 from twin.measured.text.marks import Marks, UnclearMarksError, foreign, settled, weighed
 
+#: Characters of a row, at most; what is beyond them in a line above the rows is not read.
+_LONGEST_LINE = 1 << 15
+
 
 def read_text(
     path: Path,
@@ -67,9 +70,17 @@ def parse_text(
 ) -> Table:
     """`read_text` for text at hand; ``first_line`` is the number of its first line in the file."""
     lines = text.splitlines()
+    long = {index: len(line) for index, line in enumerate(lines) if len(line) > _LONGEST_LINE}
+    for index in long:
+        lines[index] = lines[index][:_LONGEST_LINE]
     layout = find_layout(lines, delimiter, decimal)
     if layout is None:
         raise _no_rows(path, lines)
+    if (index := next((i for i in long if i >= layout.first), None)) is not None:
+        raise MeasuredError(
+            f"{path}:{index + first_line}: a line of {long[index]} characters, expected a row of at most "
+            f"{_LONGEST_LINE}"
+        )
     if decimal is None and ("." in text or "," in text) and not is_settled(lines, layout):
         layout = replace(layout, marks=_weighed(path, lines, layout, first_line))
     _check_line_above(path, lines, layout, first_line)
