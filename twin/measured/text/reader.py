@@ -76,11 +76,11 @@ def parse_text(
     layout = find_layout(lines, delimiter, decimal)
     if layout is None:
         raise _no_rows(path, lines)
-    if (index := next((i for i in long if i >= layout.first), None)) is not None:
-        raise MeasuredError(
-            f"{path}:{index + first_line}: a line of {long[index]} characters, expected a row of at most "
-            f"{_LONGEST_LINE}"
-        )
+    for index, length in long.items():
+        if index >= layout.first:
+            raise MeasuredError(
+                f"{path}:{index + first_line}: a line of {length} characters, expected a row of at most {_LONGEST_LINE}"
+            )
     if decimal is None and ("." in text or "," in text) and not is_settled(lines, layout):
         layout = replace(layout, marks=_weighed(path, lines, layout, first_line))
     _check_line_above(path, lines, layout, first_line)
