@@ -108,7 +108,7 @@ def _from_radius(
     """Centres from R in the plane, and True where there certainly is one."""
     first, last = ends
     along, across = (last - first).T
-    chord = _hypot(along, across)
+    chord = hypot(along, across)
     possible = chord > 2.0 * SAME_POSITION_MM
     possible &= chord / 2.0 - np.abs(radius) <= rules.radius_tolerance_mm + _ROUNDING_MM
     height = np.sqrt(np.maximum(radius * radius - chord * chord / 4.0, 0.0))
@@ -124,17 +124,19 @@ def path_feeds(words: ArcWords, centre: Floats, plane: int) -> Floats:
     """Feeds along the path of helices whose F is the feed along the arc in the plane, mm/min."""
     i, j, normal = PLANE_AXES[plane]
     first, last = words.start_mm - centre, words.end_mm - centre
-    radius = _hypot(first[:, i], first[:, j]) + _hypot(last[:, i], last[:, j])
-    begin, end = (_arctangent(ends[:, j], ends[:, i]) for ends in (first, last))
+    radius = hypot(first[:, i], first[:, j]) + hypot(last[:, i], last[:, j])
+    begin, end = (arctangent(ends[:, j], ends[:, i]) for ends in (first, last))
     swept = (words.turns * (end - begin)) % (2.0 * math.pi)
     closed = (words.start_mm[:, (i, j)] == words.end_mm[:, (i, j)]).all(axis=1)
     arc = np.where(closed | (swept == 0.0), 2.0 * math.pi, swept) * radius / 2.0
-    return words.feed_mm_min * _hypot(arc, words.end_mm[:, normal] - words.start_mm[:, normal]) / arc
+    return words.feed_mm_min * hypot(arc, words.end_mm[:, normal] - words.start_mm[:, normal]) / arc
 
 
-def _hypot(a: Floats, b: Floats) -> Floats:
+def hypot(a: Floats, b: Floats) -> Floats:
+    """Python's ``hypot`` of each pair, to the last bit."""
     return np.fromiter(map(math.hypot, a.tolist(), b.tolist()), np.float64, len(a))
 
 
-def _arctangent(a: Floats, b: Floats) -> Floats:
+def arctangent(a: Floats, b: Floats) -> Floats:
+    """Python's ``atan2`` of each pair, to the last bit."""
     return np.fromiter(map(math.atan2, a.tolist(), b.tolist()), np.float64, len(a))

@@ -49,6 +49,11 @@ class PlainBatch:
     calls: tuple[Call, ...] = ()
     extra: Extra = NO_EXTRA
 
+    @property
+    def place(self) -> Place:
+        """Location of its last line."""
+        return Place(file=self.file, line=self.run.after.line - 1, calls=self.calls)
+
     def states(self) -> tuple[tuple[MotionState, ...], NDArray[np.int32]]:
         """The modal values that hold in its motions, each combination once, and the index of each motion's."""
         keys = self.run.spindle_rpm + 1j * self.run.spindle_direction
@@ -115,7 +120,7 @@ def _motions(batch: PlainBatch) -> Iterator[_Row]:
     return zip(*columns, map(states.__getitem__, state.tolist()), strict=True) if ends else iter(())
 
 
-def _motion(place: Place, row: _Row, batch: PlainBatch) -> Event:
+def _motion(place: Place, row: _Row, batch: PlainBatch) -> LinearMotion | ArcMotion:
     _, code, start, end, centre, feed, state = row
     common = {"place": place, "state": state, "start_mm": start, "end_mm": end, "extra": batch.extra}
     if code < 2:
@@ -123,3 +128,13 @@ def _motion(place: Place, row: _Row, batch: PlainBatch) -> Event:
     x, y, z = centre
     plane = batch.start.plane
     return ArcMotion(**common, centre_mm=(x, y, z), plane=plane, turns=2 * code - 5, feed_mm_min=feed)
+
+
+def motion_at(batch: PlainBatch, index: int) -> LinearMotion | ArcMotion:
+    """One motion of a run, with the modal values before the run."""
+    run = batch.run
+    start = batch.start.position_mm if index == 0 else tuple(run.end_mm[index - 1].tolist())
+    end, centre = tuple(run.end_mm[index].tolist()), run.centre_mm[index].tolist()
+    line, code, feed = int(run.line[index]), int(run.code[index]), float(run.feed_mm_min[index])
+    row = (line, code, start, end, centre, feed, batch.state)
+    return _motion(Place(file=batch.file, line=line, calls=batch.calls), row, batch)

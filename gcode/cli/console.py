@@ -10,7 +10,7 @@ import contextlib
 import sys
 import time
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
@@ -20,8 +20,10 @@ from gcode.underline import harmless, harmless_json
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from gcode.bulk.plain_batch import PlainBatch
     from gcode.events import Event
 
+_E = TypeVar("_E", "Event", "Event | PlainBatch")
 #: Width of what is written to a file or a pipe.
 WIDTH = 100
 #: Progress is drawn again after this time at the earliest, s; the clock is read once per this many events.
@@ -62,7 +64,7 @@ def fail(message: str) -> None:
         say(f" {message}", error=True)
 
 
-def with_progress(events: Iterable[Event], name: str) -> Iterator[Event]:
+def with_progress(events: Iterable[_E], name: str) -> Iterator[_E]:
     """Hands events on, and shows on a terminal how far the program has come.
 
     Args:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from gcode.errors import Call
-from gcode.events import NO_EXTRA, ArcMotion, Dwell, Event, LinearMotion, Point
+from gcode.events import NO_EXTRA, ArcMotion, Dwell, Event, Extra, LinearMotion, MotionState, Point
 
 #: Decimals of numbers: 1e-9 mm is far below any control's resolution, and hides the last digits of sums.
 DECIMALS = 9
@@ -54,17 +54,31 @@ def motion_object(event: LinearMotion | ArcMotion | Dwell, at_mm: Point) -> dict
         "spindle_rpm": _number(state.spindle_rpm),
         "spindle_dir": state.spindle_direction,
         **_of_its_type(event),
+        **modal_values(state, place.file, place.column, place.calls),
+    }
+    return made
+
+
+def modal_values(state: MotionState, file: str, column: int, calls: Iterable[Call]) -> dict[str, Any]:
+    """The last part of a motion's object: modal values, file and column, and the calls where there are any."""
+    made: dict[str, Any] = {
         "feed_mode": state.feed_mode,
         "wcs": state.wcs,
         "h": state.length_number,
         "d": state.radius_number,
         "compensation": state.compensation,
-        "file": place.file,
-        "column": place.column,
+        "file": file,
+        "column": column,
     }
-    if place.calls:
-        made["calls"] = call_objects(place.calls)
+    if calls:
+        made["calls"] = call_objects(calls)
     return made
+
+
+def further_axes(extra: Extra) -> dict[str, Any]:
+    """Positions of the further axes, where one is not 0."""
+    further = {"abc": extra[:3], "uvw": extra[3:]}
+    return {name: _numbers(values) for name, values in further.items() if any(values)}
 
 
 def type_of(event: LinearMotion | ArcMotion | Dwell) -> str:
@@ -85,10 +99,7 @@ def _of_its_type(event: LinearMotion | ArcMotion | Dwell) -> dict[str, Any]:
     made: dict[str, Any] = {}
     if isinstance(event, ArcMotion):
         made |= {"plane": event.plane, "centre": _numbers(event.centre_mm), "turns": event.turns}
-    if event.extra != NO_EXTRA:
-        further = {"abc": event.extra[:3], "uvw": event.extra[3:]}
-        made |= {name: _numbers(values) for name, values in further.items() if any(values)}
-    return made
+    return made if event.extra == NO_EXTRA else made | further_axes(event.extra)
 
 
 def _number(value: float) -> float:

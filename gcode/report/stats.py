@@ -7,7 +7,13 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
+
+from gcode.bulk.plain_batch import PlainBatch
+from gcode.bulk.plain_runs import PlainRun
 from gcode.events import ArcMotion, Block, Dwell, Event, LinearMotion, Motion, MotionState, Notice, Point, ToolChange
+from gcode.report.batch_paths import BatchPaths
 from gcode.report.motion_json import type_of
 from gcode.report.path_geometry import extremes_mm, length_mm
 
@@ -110,11 +116,11 @@ class ProgramStats:
     rapid_mm_min: float
 
 
-def program_stats(events: Iterable[Event], rapid_mm_min: float = RAPID_MM_MIN) -> ProgramStats:
+def program_stats(events: Iterable[Event | PlainBatch], rapid_mm_min: float = RAPID_MM_MIN) -> ProgramStats:
     """Sums up a program; memory does not grow with its length.
 
     Args:
-        events: of the program, from its start.
+        events: of the program, from its start, or runs of plain lines in place of the events that they stand for.
         rapid_mm_min: rapid rate along the path, mm/min.
 
     Raises:
@@ -146,6 +152,14 @@ class _Collected:
             self.values.add(value)
         else:
             self.many = True
+
+    def add_all(self, values: NDArray[np.float64]) -> None:
+        """Adds values in any order."""
+        if not values.size:
+            return
+        different = np.unique(values)
+        for value in (*different[: MOST_VALUES + 1].tolist(), float(different[-1])):
+            self.add(value)
 
     def done(self) -> ValueSet | None:
         if not self.values:
@@ -193,6 +207,18 @@ class _Sums:
         if state.spindle_direction:
             self.speeds.add(state.spindle_rpm)
 
+    def add_batch(self, run: PlainRun, length_mm: NDArray[np.float64], seconds: NDArray[np.float64]) -> None:
+        """Adds the motions of a run of plain lines."""
+        cuts = run.code != 0
+        self.rapid_mm = _summed(self.rapid_mm, length_mm[~cuts])
+        self.rapid_s = _summed(self.rapid_s, seconds[~cuts])
+        self.cutting_mm = _summed(self.cutting_mm, length_mm[cuts])
+        self.cutting_s = _summed(self.cutting_s, seconds[cuts])
+        rapids, feeds, clockwise, counter = np.bincount(run.code, minlength=4).tolist()
+        self.motions.update({"rapid": rapids, "feed": feeds, "arc": clockwise + counter})
+        self.feeds.add_all(run.feed_mm_min[cuts & (run.feed_mm_min > 0.0)])
+        self.speeds.add_all(run.spindle_rpm[cuts & (run.spindle_direction != 0)])
+
     def done(self) -> MotionTotals:
         return MotionTotals(
             cutting_mm=self.cutting_mm,
@@ -206,6 +232,11 @@ class _Sums:
         )
 
 
+def _summed(first: float, values: NDArray[np.float64]) -> float:
+    """`first` and the values, added one after another."""
+    return float(np.add.accumulate(np.append(first, values))[-1])
+
+
 class _Program:
     """`ProgramStats` while they grow."""
 
@@ -216,9 +247,13 @@ class _Program:
         self._cutting, self._all = _Extent(), _Extent()
         self._blocks = self._tool_changes = self._untimed = self._notices = 0
 
-    def add(self, event: Event) -> None:
-        """Adds one event to the totals."""
-        if isinstance(event, LinearMotion | ArcMotion):
+    def add(self, event: Event | PlainBatch) -> None:
+        """Adds one event, or a run of plain lines, to the totals."""
+        if isinstance(event, PlainBatch):
+            self._blocks += event.run.block.size
+            if event.run.line.size:
+                self._batch(event)
+        elif isinstance(event, LinearMotion | ArcMotion):
             self._motion(event)
         elif isinstance(event, Dwell):
             for sums in self._sums_of(event.state):
@@ -248,6 +283,20 @@ class _Program:
                 sums.add_rapid(length, seconds)
             else:
                 sums.add_cut(length, seconds, event.feed_mm_min, event.state)
+
+    def _batch(self, batch: PlainBatch) -> None:
+        """Adds the motions of a run, with the same sums as one by one."""
+        run, paths = batch.run, BatchPaths(batch)
+        cuts = run.code != 0
+        rate = np.where(cuts, run.feed_mm_min, self._rapid_mm_min)
+        seconds = np.divide(60.0 * paths.length_mm, rate, out=np.zeros(rate.size), where=rate > 0.0)
+        self._untimed += int(np.count_nonzero((paths.length_mm > 0.0) & (rate <= 0.0)))
+        for box in paths.boxes(np.ones(cuts.size, dtype=np.bool_)):
+            self._all.add(*box)
+        for box in paths.boxes(cuts) if cuts.any() else ():
+            self._cutting.add(*box)
+        for sums in self._sums_of(batch.state):
+            sums.add_batch(run, paths.length_mm, seconds)
 
     def stats(self) -> ProgramStats:
         """The totals so far."""

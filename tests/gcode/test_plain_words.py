@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from support.nc_numbers import numbers
+from support.nc_lines import numbers
 
 from gcode.bulk.plain_words import plain_end, read_words
 

@@ -12,14 +12,11 @@ def motions(file: ProgramFile, *, setup: Setup) -> None:
     Positions are those of the controlled point in machine coordinates, mm: the tool tip while the tool length offset is
     active, else the gauge point. If the program has an error, the motions before it are printed.
     """
-    import json
     import sys
 
-    from gcode.flow.interpreter import interpret_file
-    from gcode.report.motion_json import motion_objects
-    from gcode.underline import harmless_json
+    from gcode.flow.interpreter import run
+    from gcode.report.batch_lines import motion_lines
 
-    encode = json.JSONEncoder(allow_nan=False).encode
-    events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
-    for made in motion_objects(events, setup.settings.start_mm):
-        sys.stdout.write(f"{harmless_json(encode(made))}\n")
+    events = run(file, dialect=setup.dialect, settings=setup.settings)
+    for text in motion_lines(events, setup.settings.start_mm):
+        sys.stdout.write(text)

@@ -34,10 +34,10 @@ def stats(
     Times include feed motions, dwells, and rapids at the given rate; acceleration and tool changes are ignored.
     """
     from gcode.cli.console import results, say_json, with_progress
-    from gcode.flow.interpreter import interpret_file
+    from gcode.flow.interpreter import run
     from gcode.report.stats import program_stats
 
-    events = interpret_file(file, dialect=setup.dialect, settings=setup.settings)
+    events = run(file, dialect=setup.dialect, settings=setup.settings)
     found = program_stats(with_progress(events, file.name), rapid_mm_min)
     if as_json:
         import json
