@@ -75,7 +75,7 @@ def test_json_has_the_assumptions(program: Path, replayed: FakeReplay, capsys: C
     found = json.loads(capsys.readouterr().out)
     assert found["job"] == "part.nc"
     assert {"subject": "T3", "value": "4 flutes", "reason": "the program does not state it"} in found["assumptions"]
-    assert len(found["open"]) == 1 and found["doubts"] == []
+    assert len(found["open"]) == 1 and found["doubts"] == [] and found["stated"] == ["T3 flat D8 (line 3)"]
 
 
 def test_the_job_of_a_replay_can_be_saved_and_its_changes_count(program: Path, replayed: FakeReplay) -> None:

@@ -94,6 +94,7 @@ def _drafted(file: Path, given: Mapping[str, Any], save_job: Path | None, *, qui
     if written is not None:
         print_written(written, quiet=quiet)
     assumed = {
+        "stated": list(draft.stated),
         "assumptions": assumption_objects(draft),
         "open": list(draft.open),
         "doubts": list(draft.warnings),
