@@ -51,6 +51,20 @@ def test_the_suffix_does_not_matter(name: str, tmp_path: Path) -> None:
     np.testing.assert_allclose(log.force_n, forces(), atol=accuracy * np.abs(forces()).max())
 
 
+@pytest.mark.parametrize("name", ["lvm", "dynoware"])
+def test_text_formats_in_utf_16(name: str, tmp_path: Path) -> None:
+    file, write, _ = FORMATS[name]
+    write(tmp_path / file)
+    path = tmp_path / file
+    wanted = read_forces(path)
+    text = path.read_bytes().decode("cp1252").replace("Y_Unit_Label\tN\tN\tN", "Y_Unit_Label\tkN\tN\tN")
+    path.write_bytes(text.encode("utf-16"))
+    log = read_forces(path)
+    factors = [1000.0, 1.0, 1.0] if name == "lvm" else [1.0, 1.0, 1.0]
+    np.testing.assert_allclose(log.force_n, wanted.force_n * factors)
+    assert log.rate_hz == wanted.rate_hz
+
+
 def test_a_run_is_a_log(tmp_path: Path) -> None:
     run = SlotRun(step_mm=4.0, per_turn=30)
     with McapSink(tmp_path / "run.mcap") as sink:

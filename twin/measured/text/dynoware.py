@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from twin.measured.table import Table
-from twin.measured.text.reader import parse_text, text_of
+from twin.measured.text.reader import opening_of, parse_text, text_of
 
 _SAMPLES = re.compile(r"^Samples per channel\s*:?\s*[:,;\t]+\s*(\d+)", re.IGNORECASE | re.MULTILINE)
 _CYCLES = re.compile(r"^Cycles\s*:?\s*[:,;\t]+\s*(\d+)", re.IGNORECASE | re.MULTILINE)
@@ -16,8 +16,7 @@ _CYCLES = re.compile(r"^Cycles\s*:?\s*[:,;\t]+\s*(\d+)", re.IGNORECASE | re.MULT
 
 def is_dynoware(path: Path) -> bool:
     """Whether a file begins as an export of DynoWare does."""
-    with path.open("rb") as file:
-        return b"DynoWare" in file.read(200)
+    return "DynoWare" in opening_of(path)[:200]
 
 
 def read_dynoware(

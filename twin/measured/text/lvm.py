@@ -15,7 +15,7 @@ from twin.errors import MeasuredError
 from twin.measured.table import Table
 from twin.measured.text.lvm_clock import SegmentTimes, joined_times
 from twin.measured.text.marks import Marks
-from twin.measured.text.reader import text_of
+from twin.measured.text.reader import opening_of, text_of
 
 _END = "***End_of_Header***"
 _SPECIAL = ("***Start_Special***", "***End_Special***")
@@ -46,8 +46,7 @@ class _Segment:
 
 def is_lvm(path: Path) -> bool:
     """Whether a file begins as a LabVIEW measurement file does."""
-    with path.open("rb") as file:
-        return file.read(64).lstrip(b"\xef\xbb\xbf").startswith(_MAGIC.encode())
+    return opening_of(path).startswith(_MAGIC)
 
 
 def read_lvm(path: Path) -> Table:

@@ -19,6 +19,7 @@ from twin.measured.text.marks import Marks, UnclearMarksError, foreign, settled,
 
 #: Characters of a row, at most; what is beyond them in a line above the rows is not read.
 _LONGEST_LINE = 1 << 15
+_UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 
 def read_text(
@@ -44,13 +45,22 @@ def read_text(
     )
 
 
+def opening_of(path: Path) -> str:
+    """The first characters of a file, those of other codes than UTF-16 as Windows-1252."""
+    with path.open("rb") as file:
+        data = file.read(400)
+    if data[:2] in _UTF16_MARKS:
+        return data.decode("utf-16", errors="replace")
+    return data.removeprefix(b"\xef\xbb\xbf").decode("cp1252", errors="replace")
+
+
 def text_of(path: Path) -> str:
     """The file's text: UTF-8, UTF-16 with its mark, or Windows-1252."""
     try:
         data = path.read_bytes()
     except OSError as error:
         raise MeasuredError(f"{path}: cannot be read: {(error.strerror or str(error)).lower()}") from error
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+    if data[:2] in _UTF16_MARKS:
         return data.decode("utf-16", errors="replace")
     try:
         return data.decode("utf-8-sig")
