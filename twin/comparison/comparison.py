@@ -17,6 +17,7 @@ from twin.comparison.metrics import AxisErrors, axis_errors
 from twin.comparison.phase import best_shift
 from twin.comparison.run_forces import RunForces, read_run_forces
 from twin.errors import CompareError
+from twin.measured.axes import mirrored
 from twin.measured.filters import filtered
 from twin.measured.forces import read_forces
 from twin.measured.log import AXES, Correction, ForceLog, Gap
@@ -108,7 +109,7 @@ def compare(run: RunForces, log: ForceLog, settings: CompareSettings) -> Compari
         CompareError: no overlap; forces in a wrong unit; a window outside; no air for the zero.
         MeasuredError: a filter or rate that does not fit.
     """
-    warnings = list(checks.check_units(run, log, settings))
+    warnings = [*mirrored(settings.axis_map, settings.force_on), *checks.check_units(run, log, settings)]
     rpm, teeth = run.speed_in(run.span_s) or (0.0, 1)
     log = uniform(log)
     speed = spindle_speed(log, teeth, rpm) if rpm else None

@@ -12,6 +12,7 @@ from twin.identification.cuts.measure import SPEED_DOUBT
 from twin.identification.fit.least_squares import Estimate
 from twin.identification.models.straight import NAMES
 from twin.identification.result import CutResult
+from twin.measured.axes import mirrored
 
 #: Condition numbers above make coefficients follow each other; nine cuts with three feeds and three depths have 6.
 _CONDITION = 30.0
@@ -62,6 +63,7 @@ def doubts(
 def _logs(cuts: Cuts, results: Sequence[CutResult]) -> Iterator[str]:
     """Warnings about the logs."""
     teeth = cuts.tool.teeth if cuts.tool is not None else 1
+    yield from dict.fromkeys(text for cut in cuts.cuts for text in mirrored(cut.axis_map, cut.force_on))
     no_air = [r.name for r in results if any("no air found" in note for note in r.measured.notes)]
     if no_air:
         yield (

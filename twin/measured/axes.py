@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import TypeAlias
 
 from twin.errors import MeasuredError
@@ -72,6 +73,22 @@ class AxisMap:
     def __str__(self) -> str:
         return ",".join(f"{axis}={column}" for axis, column in self.entries)
 
+    @property
+    def left_handed(self) -> bool:
+        """Whether the map mirrors the log's axes: no position of a dynamometer does, only a wrong sign or column.
+
+        Known of maps with one column for each axis, named after the axes, or as ``#2`` in their order.
+        """
+        columns = [text.lstrip("+- ") for _, text in self.entries]
+        if len(columns) != len(AXES):
+            return False
+        order = _axes_of([_SCALE.sub("", column) for column in columns])
+        if order is None:
+            return False
+        swaps = sum(a > b for a, b in combinations(order, 2))
+        signs = sum(text.startswith("-") for _, text in self.entries)
+        return (swaps + signs) % 2 == 1
+
     def terms(self, names: Mapping[str, str]) -> dict[str, tuple[Term, ...]]:
         """Factors and columns for each axis.
 
@@ -89,6 +106,29 @@ class AxisMap:
                 raise MeasuredError(f"axis map {str(self)!r}: no column {text.lstrip('+-')!r}; columns are {known}")
             made[axis] = found
         return made
+
+
+def mirrored(axis_map: AxisMap | None, force_on: str) -> Iterator[str]:
+    """A warning where a map mirrors the axes of a force on the workpiece.
+
+    A map to the force on the tool may: it has the signs of the reaction.
+    """
+    if axis_map is not None and axis_map.left_handed and force_on == "workpiece":
+        yield (
+            f"the axis map {axis_map} mirrors the log's axes, which no position of a dynamometer does: check its signs "
+            "and columns, or omit force_on if the signs are those of the force on the tool"
+        )
+
+
+def _axes_of(columns: Sequence[str]) -> tuple[int, ...] | None:
+    """The axis, 0 to 2, that each of three columns is named after; None where that is not known."""
+    if all(re.fullmatch(r"#\d+", column) for column in columns):
+        numbers = [int(column[1:]) for column in columns]
+        order = tuple(sorted(numbers).index(number) for number in numbers)
+    else:
+        named = [[k for k, a in enumerate(AXES) if any(_matches(p, a, c) for p in _FORCE_NAMES)] for c in columns]
+        order = tuple(axes[0] for axes in named if len(axes) == 1)
+    return order if sorted(order) == list(range(len(AXES))) else None
 
 
 def aliases(columns: Iterable[str]) -> dict[str, str]:

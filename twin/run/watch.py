@@ -81,6 +81,7 @@ class Watch:
         self._notices: dict[str, tuple[int, int]] = {}
         self._feeds = _Extent()
         self._fed = False
+        self._reversed: dict[int, int] = {}
 
     @property
     def groups(self) -> list[CollisionGroup]:
@@ -116,6 +117,8 @@ class Watch:
             self._fed = True
             self._feeds.add(step.start_mm)
             self._feeds.add(step.end_mm)
+            if step.spindle_rpm < 0.0 and step.engagement.cutting:
+                self._reversed.setdefault(step.tool, step.nc_line)
 
     def _collision(self, collision: Collision) -> None:
         if len(self.collisions) < MOST_COLLISIONS:
@@ -169,6 +172,11 @@ class Watch:
     def _on_tools(self) -> Iterator[str]:
         """Assumptions on the tools, as the job states them."""
         parameters = self.header.parameters if self.header is not None else {}
+        for tool, line in self._reversed.items():
+            yield (
+                f"line {line}: T{tool} cuts under M4: it is taken for a left-hand cutting tool, the mirror image of "
+                "the job's; a right-hand one would rub"
+            )
         for key, text in parameters.items():
             if _TOOL_CAUTION.fullmatch(key):
                 yield f"tool {parameters.get(key.replace('.caution', '.number'))}: {text}"

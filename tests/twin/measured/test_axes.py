@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from twin.errors import MeasuredError
-from twin.measured.axes import AxisMap, aliases, guess_map
+from twin.measured.axes import AxisMap, aliases, guess_map, mirrored
 
 NAMES = ["Fx_N", "Fy [N]", "Dyn-Fz", "Fx1+2", "Fx3+4", "Trigger"]
 
@@ -31,6 +31,29 @@ def test_terms(text: str, axis: str, terms: object) -> None:
 def test_what_is_no_map(text: str) -> None:
     with pytest.raises(MeasuredError, match=r"expected e.g. x=-Fy,y=-Fx,z=Fz|no column"):
         AxisMap.parse(text).terms(aliases(NAMES))
+
+
+@pytest.mark.parametrize(
+    ("text", "left_handed"),
+    [
+        ("x=Fx,y=Fy,z=Fz", False),
+        ("x=-Fy,y=Fx,z=Fz", False),
+        ("x=Fy,y=Fx,z=-Fz", False),
+        ("x=Fx,y=Fy,z=-Fz", True),
+        ("x=-2.5*Fy [N],y=-Fx_N,z=Dyn-Fz", True),
+        ("x=#3,y=#2,z=#4", True),
+        ("x=#4,y=#2,z=#3", False),
+        ("x=-Fx,y=Fy", False),
+        ("x=-A,y=B,z=C", False),
+    ],
+)
+def test_maps_that_mirror_the_axes(text: str, left_handed: bool) -> None:
+    assert AxisMap.parse(text).left_handed is left_handed
+    found = [*mirrored(AxisMap.parse(text), "workpiece")]
+    assert [f"the axis map {AxisMap.parse(text)} mirrors the log's axes" in line for line in found] == [
+        True
+    ] * left_handed
+    assert not [*mirrored(AxisMap.parse(text), "tool")]
 
 
 def test_an_unknown_column_is_named_with_those_that_are_there() -> None:

@@ -11,6 +11,7 @@ from tests.support.job_files import job_data
 from twin.job import job_from_dict
 from twin.record import RunSummary
 from twin.run.plausibility import Plausibility
+from twin.run.watch import Watch
 from twin.simulation.replay import Replay
 
 SLOT = "T1 M6\nS3600 M3\nG54 G0 X-6 Y15 Z5\nG1 Z-2 F600\nX66\nM30\n"
@@ -91,3 +92,14 @@ def test_removal_without_force(tmp_path: Path) -> None:
     none = dict.fromkeys(("Ktc", "Kte", "Krc", "Kre", "Kac", "Kae"), 0.0) | {"source": "none"}
     (found,) = doubts(tmp_path, cutting=none)
     assert "removed without any force" in found
+
+
+def test_a_reversed_spindle_is_stated_and_no_error_of_a_strict_replay(tmp_path: Path) -> None:
+    (tmp_path / "slot.nc").write_text(SLOT.replace("M3\n", "M4\n"))
+    watch = Watch()
+    with Replay(job_from_dict(job_data(simulation__axial_step_mm=2.0), tmp_path), preview=False) as replay:
+        for record in replay:
+            watch.take(record)
+    assert isinstance(record, RunSummary)
+    assert "line 5: T1 cuts under M4: it is taken for a left-hand cutting tool" in watch.warnings(record)[0]
+    assert not watch.doubts(record)
