@@ -9,6 +9,7 @@ missed or counted twice.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
@@ -89,6 +90,13 @@ class Positions:
     def part(self, first: int, last: int) -> Positions:
         """Positions ``first`` to ``last - 1``."""
         at = slice(first, last)
+        return Positions(
+            self.tip_mm[at], self.feed[at], self.feed_mm_s[at], self.feed_per_tooth_mm[at], self.waiting[at]
+        )
+
+    def take(self, numbers: Sequence[int]) -> Positions:
+        """Positions by their numbers."""
+        at = np.asarray(numbers, dtype=np.intp)
         return Positions(
             self.tip_mm[at], self.feed[at], self.feed_mm_s[at], self.feed_per_tooth_mm[at], self.waiting[at]
         )

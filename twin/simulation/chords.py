@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import islice, pairwise
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,20 +19,16 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.cutting.engagement import Positions
 from twin.motion.path import Move
-from twin.motion.sweep import SweptVolume
-from twin.record import Engagement, Step
+from twin.record import Step
 from twin.simulation.material import Material
 from twin.simulation.setup import Setup
 from twin.simulation.solve import Solved
+from twin.simulation.sparse import solved_where_it_changes
 from twin.simulation.steps import SAMPLES_TOGETHER, STEPS_TOGETHER, Piece, refuse_endless
 from twin.simulation.tools import ToolSetup
 
 #: Chords that turn by no more than this do not reach the front of the tool at those after them.
 _TURN_RAD = 0.5 * math.pi * (1.0 + 1e-9)
-#: Most chords from one whose engagement is found to the next, and their length in tool radii.
-_APART, _APART_RADII = 8, 0.25
-#: Engagements are alike when width, arc and removal rate differ by no more than this part.
-_ALIKE = 0.1
 
 
 def chords_are_steps(move: Move, setup: Setup) -> bool:
@@ -101,7 +97,7 @@ def chord_steps(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Set
         turned.append(recorder.turned(t_s, duration_s, move))
         t_s += duration_s
     if tool.forces is None:
-        solved = solved_where_it_changes(move, chords, tool, setup)
+        solved = chords_where_it_changes(move, chords, tool, setup)
     else:
         ends = np.array([chords[0][0], *(end for _, end, _ in chords)])
         at = _middles(move, chords, tool, np.arange(len(chords)) + setup.material.waiting)
@@ -125,46 +121,11 @@ def _middles(move: Move, chords: Sequence[Piece], tool: ToolSetup, waiting: NDAr
     )
 
 
-def solved_where_it_changes(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup) -> list[Solved]:
-    """The engagement of each chord, found at some of them; others take that of the nearest if those next to them agree.
+def chords_where_it_changes(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup) -> list[Solved]:
+    """The engagement of each chord, without forces; see `solved_where_it_changes`.
 
     The sweeps of the chords themselves are not excluded: none reaches the front of the tool at a later one.
     """
     pending = setup.material.pending_chords(tool, np.empty((0, 3)))
-    n = len(chords)
-    found = np.unique(np.append(np.arange(0, n, _apart(chords, tool)), n - 1))
-    solved = dict(zip(found.tolist(), _solve(move, [chords[i] for i in found], tool, setup, pending), strict=True))
-    between = [
-        i
-        for a, b in pairwise(found.tolist())
-        if not _alike(solved[a].engagement, solved[b].engagement)
-        for i in range(a + 1, b)
-    ]
-    if between:
-        solved |= zip(between, _solve(move, [chords[i] for i in between], tool, setup, pending), strict=True)
-    known = np.array(sorted(solved))
-    nearest = known[np.argmin(np.abs(np.arange(n)[:, None] - known), axis=1)]
-    return [solved[i] for i in nearest.tolist()]
-
-
-def _apart(chords: Sequence[Piece], tool: ToolSetup) -> int:
-    """How many chords lie between those whose engagement is found first."""
-    longest = float(_along(chords)[1].max())
-    return max(1, min(_APART, int(_APART_RADII * tool.cutter.radius_mm / longest)))
-
-
-def _alike(a: Engagement, b: Engagement) -> bool:
-    """Whether two engagements are nearly the same."""
-    pairs = (
-        (a.radial_width_mm, b.radial_width_mm),
-        (a.arc_rad, b.arc_rad),
-        (a.removal_rate_mm3_s, b.removal_rate_mm3_s),
-    )
-    return a.cutting == b.cutting and all(abs(x - y) <= _ALIKE * max(x, y) for x, y in pairs)
-
-
-def _solve(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Setup, pending: SweptVolume) -> list[Solved]:
-    """The engagement of chords, of which none is among the pending sweeps."""
     at = _middles(move, chords, tool, np.full(len(chords), len(pending), dtype=np.int64))
-    nothing = [np.zeros(0)] * len(chords)
-    return setup.solver.solve(tool, at, nothing, np.full(len(chords), move.spindle_rpm), pending)()
+    return solved_where_it_changes(at, float(_along(chords)[1].max()), move.spindle_rpm, tool, setup, pending)

@@ -10,7 +10,7 @@ import numpy as np
 from gcode.events import Block, Event
 from twin.motion.path import Move
 from twin.record import Record
-from twin.simulation.chords import in_one_direction, solved_where_it_changes
+from twin.simulation.chords import chords_where_it_changes, in_one_direction
 from twin.simulation.clock import UNSAMPLED
 from twin.simulation.contacts import Contacts
 from twin.simulation.setup import Setup
@@ -102,7 +102,7 @@ def cut_level_run(run: LevelRun, tool: ToolSetup, setup: Setup) -> Iterator[Reco
     setup.starts.check(tool, first, material)
     material.settle(tool, first.start_mm, run.chords[0][1])
     rigid_near = material.rigid_near(tool, np.array([first.start_mm, *(end for _, end, _ in run.chords)]))
-    solved = iter(zip(run.chords, solved_where_it_changes(first, run.chords, tool, setup), strict=True))
+    solved = iter(zip(run.chords, chords_where_it_changes(first, run.chords, tool, setup), strict=True))
     for item in run.items:
         if not isinstance(item, Move | Joined):
             yield recorder.event(item)

@@ -19,12 +19,15 @@ from twin.simulation.clock import Turned
 from twin.simulation.contacts import forbidden
 from twin.simulation.setup import Setup
 from twin.simulation.solve import Solved, StepSolver, one_ahead
+from twin.simulation.sparse import solved_where_it_changes
 from twin.simulation.tools import ToolSetup
 
 #: A straight motion of the tool tip: start and end, shape (3,), mm, and its duration, s.
 Piece: TypeAlias = tuple[FloatArray, FloatArray, float]
 #: Steps of a motion that are solved together, whatever the number of threads.
 STEPS_TOGETHER = 64
+#: The same for a tool without forces.
+SPARSE_TOGETHER = 512
 #: Most steps of one motion, and most force samples of one step and of steps that are solved together.
 _MOST_STEPS, _MOST_SAMPLES, SAMPLES_TOGETHER = 10_000_000, 5_000_000, 1_000_000
 
@@ -57,10 +60,33 @@ def piece_steps(move: Move, piece: Piece, tool: ToolSetup, setup: Setup) -> Iter
     ends = start + along * (np.arange(count + 1) / count)[:, None]
     pending = setup.material.pending(tool.number, start, along / length)
     turns = setup.recorder.turns(setup.recorder.t_s, step_s, move)
+    if tool.forces is None:
+        yield from _without_forces(move, tool, ends, step_s, pending, turns, setup)
+        return
     begun = _begun(move, tool, ends, along / length, pending, turns, setup.solver, together)
     for first, turned, answer in one_ahead(begun):
         for i, (samples, solved) in enumerate(zip(turned, answer(), strict=True), start=first):
             yield setup.recorder.step(move, ends[i], ends[i + 1], step_s, samples, solved)
+
+
+def _without_forces(
+    move: Move,
+    tool: ToolSetup,
+    ends: FloatArray,
+    step_s: float,
+    pending: SweptVolume,
+    turns: Iterator[Turned],
+    setup: Setup,
+) -> Iterator[Step]:
+    """The steps of a line for a tool without forces; see `_begun`."""
+    along = ends[-1] - ends[0]
+    length = float(np.linalg.norm(along))
+    for first in range(0, len(ends) - 1, SPARSE_TOGETHER):
+        at = positions(move, tool, ends[first : first + SPARSE_TOGETHER + 1], along / length, pending)
+        step_mm = length / (len(ends) - 1)
+        solved = solved_where_it_changes(at, step_mm, move.spindle_rpm, tool, setup, pending)
+        for i, own in enumerate(solved, start=first):
+            yield setup.recorder.step(move, ends[i], ends[i + 1], step_s, next(turns), own)
 
 
 def refuse_endless(move: Move, steps: int, samples: float, setup: Setup) -> None:
