@@ -13,10 +13,10 @@ import numpy as np
 from mcap.opcode import Opcode
 
 from twin.archive import schemas
+from twin.archive.container.chunk import to_ns
 from twin.archive.container.container import Container
 from twin.archive.container.frames import DAMAGE, McapFile
 from twin.archive.container.partial import PartialFile
-from twin.archive.forces import to_ns
 from twin.arrays import FloatArray
 from twin.errors import ArchiveError
 

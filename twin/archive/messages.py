@@ -1,4 +1,4 @@
-"""Records to protobuf payloads and back, one pair of functions per kind of record (forces: `twin.archive.forces`)."""
+"""Records to protobuf payloads and back, one pair of functions per kind of record (forces: `twin.archive.samples`)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.archive import schemas
-from twin.archive.forces import to_ns
+from twin.archive.container.chunk import to_ns
+from twin.archive.samples.columns import pack, unpack
 from twin.record import Collision, Engagement, ForceSamples, NcEvent, Step, ToolRecord, WorkpiecePatch
 
 _ENGAGEMENT_FIELDS = (
@@ -24,11 +25,15 @@ _STEP_FIELDS = ("t_s", "duration_s", "nc_line", "tool", "rapid", "feed_mm_min", 
 _LEVELS = {"notice": schemas.WARNING}
 _UPRIGHT = {"w": 1.0}
 
-#: A point of a cloud as viewers read it: position, normal, colour.
-POINT = np.dtype(
-    [(name, "<f4") for name in ("x", "y", "z", "nx", "ny", "nz")]
-    + [(c, "u1") for c in ("red", "green", "blue", "alpha")]
-)
+_XYZ, _NORMAL = ("x", "y", "z"), ("nx", "ny", "nz")
+_COLOR = [(c, "u1") for c in ("red", "green", "blue", "alpha")]
+#: A point of a cloud as viewers read it: position and colour.
+POINT = np.dtype([(name, "<f4") for name in _XYZ] + _COLOR)
+#: A point in the files of versions up to 0.1.0, whose triangles are three uint32 each.
+_POINT_WITH_NORMAL = np.dtype([(name, "<f4") for name in (*_XYZ, *_NORMAL)] + _COLOR)
+#: Components of a normal are stored as whole multiples of 1 / 127; of the triangles' corners, differences.
+_NORMAL_UNITS = 127.0
+_TRIANGLE_ORDER = 1
 _STEEL_RGB = (176, 184, 196)
 _BRASS_RGB = (214, 176, 92)
 #: Unit vector towards the light that shades the points, and the share of the light on the side away from it.
@@ -39,13 +44,17 @@ _TOOL_ANGLES = 24
 _TOOL_PITCH_MM = 0.5
 
 
-def engagement(step: Step) -> bytes:
-    """A step without its samples, as `twin.Engagement`."""
+def engagement(step: Step, samples: int) -> bytes:
+    """A step without its samples, as `twin.Engagement`.
+
+    Args:
+        samples: number of those that the file keeps.
+    """
     values: dict[str, Any] = {name: getattr(step, name) for name in _STEP_FIELDS}
     values |= {name: getattr(step.engagement, name) for name in _ENGAGEMENT_FIELDS}
     for point, at in (("start", step.start_mm), ("end", step.end_mm)):
         values |= {f"{point}_{axis}_mm": value for axis, value in zip("xyz", at, strict=True)}
-    return _payload(schemas.ENGAGEMENT, step=step.index, samples=len(step.samples.t_s), **values)
+    return _payload(schemas.ENGAGEMENT, step=step.index, samples=samples, **values)
 
 
 def to_step(message: Any, samples: ForceSamples) -> Step:
@@ -124,10 +133,17 @@ def to_collision(message: Any) -> Collision:
 
 
 def patch(record: WorkpiecePatch) -> bytes:
-    """A patch of the workpiece as a `foxglove.PointCloud` of its vertices, with its triangles in a further field."""
-    cloud = _cloud(record.vertices_mm, record.normals, _STEEL_RGB)
-    triangles = np.ascontiguousarray(record.triangles, "<u4").tobytes()
-    return _cloud_payload(record.t_s, schemas.WORKPIECE_FRAME, cloud, patch=record.patch, triangles=triangles)
+    """A patch of the workpiece as a `foxglove.PointCloud` of its vertices; normals and triangles in further fields."""
+    corners = record.triangles.reshape(-1).astype(np.int64)
+    return _cloud_payload(
+        record.t_s,
+        schemas.WORKPIECE_FRAME,
+        _cloud(record.vertices_mm, record.normals, _STEEL_RGB),
+        patch=record.patch,
+        triangle_count=len(record.triangles),
+        packed_triangles=pack(corners, _TRIANGLE_ORDER),
+        packed_normals=np.rint(record.normals * np.float32(_NORMAL_UNITS)).astype(np.int8).tobytes(),
+    )
 
 
 def to_patch(message: Any) -> WorkpiecePatch:
@@ -136,14 +152,44 @@ def to_patch(message: Any) -> WorkpiecePatch:
     Raises:
         ValueError: the cloud's data are not in this program's layout.
     """
-    cloud = np.frombuffer(message.data, POINT)
+    earlier = message.point_stride == _POINT_WITH_NORMAL.itemsize
+    cloud = np.frombuffer(message.data, _POINT_WITH_NORMAL if earlier else POINT)
+    if earlier:
+        normals, corners = _triples([cloud[c] for c in _NORMAL]), np.frombuffer(message.triangles, "<u4")
+    else:
+        normals, corners = _normals(message.packed_normals, len(cloud)), _corners(message)
     return WorkpiecePatch(
         t_s=message.t_s,
         patch=message.patch,
-        vertices_mm=_triples([cloud[c] for c in ("x", "y", "z")]),
-        normals=_triples([cloud[c] for c in ("nx", "ny", "nz")]),
-        triangles=np.frombuffer(message.triangles, "<u4").reshape(-1, 3),
+        vertices_mm=_triples([cloud[c] for c in _XYZ]),
+        normals=normals,
+        triangles=corners.reshape(-1, 3),
     )
+
+
+def _normals(data: bytes, count: int) -> NDArray[np.float32]:
+    """Unit normals of a patch, shape (count, 3).
+
+    Raises:
+        ValueError: not so many.
+    """
+    normals = np.frombuffer(data, np.int8).reshape(count, 3).astype(np.float32)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.float32(1.0))
+    normals.flags.writeable = False
+    return normals
+
+
+def _corners(message: Any) -> NDArray[np.uint32]:
+    """Vertices of the triangles of a patch, three of each.
+
+    Raises:
+        ValueError: not so many as the message states.
+    """
+    if message.triangle_count > len(message.packed_triangles):
+        raise ValueError(f"{message.triangle_count} triangles in {len(message.packed_triangles)} bytes")
+    corners = unpack(message.packed_triangles, 3 * message.triangle_count, _TRIANGLE_ORDER).astype(np.uint32)
+    corners.flags.writeable = False
+    return corners
 
 
 def tool_shape(t_s: float, tool: ToolRecord) -> bytes:
@@ -167,9 +213,8 @@ def _spread(profile_mm: NDArray[np.float64]) -> NDArray[np.float64]:
 def _cloud(points: NDArray[np.float32], normals: NDArray[np.float32], rgb: tuple[int, int, int]) -> NDArray[np.void]:
     """Points of a cloud, shaded by their normals so that a viewer shows a surface."""
     cloud = np.zeros(len(points), POINT)
-    for values, names in ((points, ("x", "y", "z")), (normals, ("nx", "ny", "nz"))):
-        for column, name in enumerate(names):
-            cloud[name] = values[:, column]
+    for column, name in enumerate(_XYZ):
+        cloud[name] = points[:, column]
     lit = np.clip(np.nan_to_num(normals @ np.array(_LIGHT, np.float32)), 0.0, 1.0)
     for name, value in zip(("red", "green", "blue"), rgb, strict=True):
         cloud[name] = (value * (_AMBIENT + (1.0 - _AMBIENT) * lit)).astype(np.uint8)

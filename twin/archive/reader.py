@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from os import PathLike
@@ -13,20 +13,22 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Schema
 from numpy.typing import NDArray
 
-from twin.archive import forces, messages, schemas
+from twin.archive import messages, schemas
 from twin.archive import run_metadata as meta
 from twin.archive.container.chunk import MESSAGE_FIXED, MESSAGE_HEAD
 from twin.archive.container.frames import DAMAGE, HEAD, Frame, RunFile, stream
 from twin.archive.container.integrity import checked_index, compare_counts
 from twin.archive.container.unpack import ChunkError
+from twin.archive.samples import packed, single
+from twin.archive.samples.fixed_records import FixedRecords
 from twin.errors import ArchiveError
-from twin.record import Attachment, Record, RunHeader, RunSummary, Step
+from twin.record import Attachment, ForceSamples, Record, RunHeader, RunSummary, Step
 
 _CONVERTERS: dict[str, Callable[[Any], Record]] = {
     schemas.NC_TOPIC: messages.to_nc,
     schemas.COLLISION_TOPIC: messages.to_collision,
 }
-_FOR_VIEWERS_ONLY = (schemas.POSE_TOPIC, schemas.TOOL_SHAPE_TOPIC)
+_FOR_VIEWERS_ONLY = (schemas.POSE_TOPIC, schemas.TOOL_SHAPE_TOPIC, schemas.REVOLUTION_TOPIC)
 
 
 def read_run(path: str | PathLike[str]) -> Iterator[Record]:
@@ -45,19 +47,25 @@ def read_run(path: str | PathLike[str]) -> Iterator[Record]:
 
 @dataclass(slots=True)
 class _PendingStep:
-    """A step whose samples are still to be read."""
+    """A step whose samples are still to be read.
+
+    Attributes:
+        missing: number of those samples.
+        blocks: samples read so far, where each is a message.
+        samples: all of them, where they are packed.
+    """
 
     message: Any
     missing: int
     blocks: list[NDArray[np.void]] = field(default_factory=list)
+    samples: ForceSamples | None = None
 
     def take(self, block: NDArray[np.void]) -> None:
-        if len(block):
-            self.blocks.append(block)
+        self.blocks.append(block)
         self.missing -= len(block)
 
     def step(self) -> Step:
-        return messages.to_step(self.message, forces.to_samples(self.blocks))
+        return messages.to_step(self.message, self.samples or single.to_samples(self.blocks))
 
 
 @dataclass(slots=True)
@@ -75,12 +83,13 @@ class Decoder:
     _schemas: dict[int, Schema] = field(default_factory=dict)
     _topics: dict[int, str] = field(default_factory=dict)
     _classes: dict[int, Any] = field(default_factory=dict)
-    _layouts: dict[int, forces.ForceLayout] = field(default_factory=dict)
+    _layouts: dict[int, FixedRecords] = field(default_factory=dict)
     _files: list[Attachment] = field(default_factory=list)
     _metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     _header: RunHeader | None = None
     _summary: RunSummary | None = None
-    _pending: _PendingStep | None = None
+    _pending: deque[_PendingStep] = field(default_factory=deque)
+    _waiting: deque[Record | _PendingStep] = field(default_factory=deque)
     _sequence: dict[int, int] = field(default_factory=dict)
 
     def records(self) -> Iterator[Record]:
@@ -95,8 +104,8 @@ class Decoder:
             compare_counts(self.file, index, self.counts)
             for name in index.metadata.keys() - self._metadata.keys():
                 raise self.file.damaged(index.metadata[name], f"no metadata {name!r}")
-            if self._pending is not None:
-                raise self.file.damaged(index.start, f"step {self._pending.message.step} without all of its samples")
+            if self._pending:
+                raise self.file.damaged(index.start, f"step {self._pending[0].message.step} without all of its samples")
         if self._summary is not None:
             yield self._summary
 
@@ -143,7 +152,9 @@ class Decoder:
         self._files.clear()
         self._metadata.clear()
         self._sequence.clear()
-        self._header = self._summary = self._pending = None
+        self._pending.clear()
+        self._waiting.clear()
+        self._header = self._summary = None
 
     def _frame(self, frame: Frame) -> Iterator[Record]:
         if frame.opcode == Opcode.CHUNK:
@@ -185,10 +196,10 @@ class Decoder:
             schemas.message_class(wanted) if own else schemas.embedded_class(schema.data, wanted)
         )
         if channel.topic == schemas.FORCE_TOPIC and own:
-            self._layouts[channel.id] = forces.ForceLayout.of(channel.id)
+            self._layouts[channel.id] = FixedRecords.of(channel.id, schemas.FORCE)
 
     def _chunk(self, data: bytes) -> Iterator[Record]:
-        """Records inside a chunk; a step's force messages are taken as one array."""
+        """Records inside a chunk; force messages of earlier versions are taken as arrays."""
         at = 0
         while at < len(data):
             opcode, length = data[at], int.from_bytes(data[at + 1 : at + 9], "little")
@@ -199,7 +210,8 @@ class Decoder:
                 block = self._force_block(channel, data, at)
                 if len(block):
                     self._count(channel, len(block), sequence, int(block["log_time"][-1]))
-                    yield from self._take(block)
+                    self._take(block)
+                    yield from self._ready()
                     at += block.nbytes
                     continue
                 self._count(channel, 1, sequence, time_ns)
@@ -222,28 +234,57 @@ class Decoder:
     def _force_block(self, channel: int, data: bytes, at: int) -> NDArray[np.void]:
         """The current step's force messages at this position, as far as they have this program's layout."""
         layout = self._layouts.get(channel)
-        if layout is None or self._pending is None:
-            return forces.NO_RECORDS
-        return layout.match(data, at, self._pending.missing)
+        if layout is None or not self._pending:
+            return single.NO_RECORDS
+        return layout.match(data, at, self._pending[0].missing)
 
     def _message(self, channel: int, payload: bytes) -> Iterator[Record]:
         """One message of any topic except those for viewers only."""
         if channel not in self._classes:
             return
         topic, message = self._topics[channel], self._classes[channel].FromString(payload)
-        if topic == schemas.FORCE_TOPIC:
-            yield from self._take(forces.row(message))
+        if topic == schemas.PACKED_TOPIC:
+            self._unpack(message)
+        elif topic == schemas.FORCE_TOPIC:
+            self._take(single.row(message))
         elif topic == schemas.ENGAGEMENT_TOPIC:
-            self._pending = _PendingStep(message, message.samples)
-            yield from self._take(forces.NO_RECORDS)
+            step = _PendingStep(message, message.samples)
+            self._waiting.append(step)
+            if step.missing:
+                self._pending.append(step)
         else:
-            yield _CONVERTERS.get(topic, messages.to_patch)(message)
+            self._waiting.append(_CONVERTERS.get(topic, messages.to_patch)(message))
+        yield from self._ready()
 
-    def _take(self, block: NDArray[np.void]) -> Iterator[Record]:
-        """Add force messages to the current step; yields the step when it has all of them."""
-        if self._pending is None:
-            return
-        self._pending.take(block)
-        if self._pending.missing <= 0:
-            step, self._pending = self._pending.step(), None
-            yield step
+    def _take(self, block: NDArray[np.void]) -> None:
+        """Add force messages of earlier versions to the step that lacks them."""
+        if self._pending:
+            self._pending[0].take(block)
+            if self._pending[0].missing <= 0:
+                self._pending.popleft()
+
+    def _unpack(self, message: Any) -> None:
+        """Give the samples in a message to the steps that lack them.
+
+        Raises:
+            ValueError: samples of other steps.
+        """
+        counts = list(message.samples)
+        steps = [self._pending.popleft() for _ in counts[: len(self._pending)]]
+        if [step.missing for step in steps] != counts:
+            raise ChunkError("force samples that are not those of the steps before them")
+        samples = packed.decode(message, [step.message.spindle_rpm for step in steps])
+        for step, own in zip(steps, samples, strict=True):
+            step.samples, step.missing = own, 0
+
+    def _ready(self) -> Iterator[Record]:
+        """The records that wait for no samples any more, in order."""
+        while self._waiting:
+            first = self._waiting[0]
+            if not isinstance(first, _PendingStep):
+                yield first
+            elif first.missing <= 0:
+                yield first.step()
+            else:
+                return
+            self._waiting.popleft()

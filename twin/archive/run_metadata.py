@@ -20,6 +20,8 @@ PARAMETERS = "twin.parameters"
 HEADER = "twin.run"
 SUMMARY = "twin.summary"
 _CHECKSUM = "crc32"
+#: Setting that states which force samples the file keeps.
+_SAMPLES = "output.samples"
 
 _HEADER_TEXT = ("twin_version", "program", "force_on")
 _HEADER_JSON = ("slice_pitch_mm", "planned_time_s")
@@ -56,6 +58,11 @@ def unsealed(data: Mapping[str, str], *, required: bool) -> dict[str, str]:
 
 def _checksum(data: Mapping[str, str]) -> str:
     return f"{zlib.crc32(json.dumps(data, sort_keys=True).encode()):08x}"
+
+
+def kept_samples(header: RunHeader) -> str:
+    """Force samples that an archive keeps: ``all``, ``revolution`` (none), ``cutting`` (those of cutting steps)."""
+    return header.parameters.get(_SAMPLES, "all")
 
 
 def tool_table(tools: Sequence[ToolRecord]) -> bytes:

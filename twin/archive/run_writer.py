@@ -7,12 +7,12 @@ from collections.abc import Callable
 
 from twin.archive import messages, schemas
 from twin.archive import run_metadata as meta
+from twin.archive.container.chunk import to_ns
 from twin.archive.container.container import Container
-from twin.archive.forces import to_ns
 from twin.errors import ArchiveError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, Step, ToolRecord, WorkpiecePatch
 
-#: A chunk is completed at this uncompressed size ...
+#: A chunk is completed at this uncompressed size, each force sample as a message of its own (10,000 samples) ...
 CHUNK_BYTES = 1 << 20
 #: ... or this long after its first record: a killed run loses no more than that.
 CHUNK_SECONDS = 2.0
@@ -31,6 +31,7 @@ class RunWriter:
         self._clock = clock
         self._file: Container | None = None
         self._program = ""
+        self._samples = "all"
         self._tools: dict[int, ToolRecord] = {}
         self._tool: int | None = None
         self._last: Step | None = None
@@ -63,7 +64,7 @@ class RunWriter:
     def finish(self) -> None:
         """Complete the file."""
         if self._file is not None:
-            self._end_pose(self._file)
+            self._end(self._file)
             self._file.finish()
 
     def _start(self, header: RunHeader) -> None:
@@ -80,6 +81,7 @@ class RunWriter:
         file.add_metadata(meta.PARAMETERS, meta.sealed(header.parameters))
         file.add_metadata(meta.HEADER, meta.sealed(meta.header_metadata(header)))
         self._program = header.program
+        self._samples = meta.kept_samples(header)
         self._tools = {tool.number: tool for tool in header.tools}
 
     def _encode(self, file: Container, record: Record) -> None:
@@ -94,7 +96,7 @@ class RunWriter:
                 topic = schemas.WORKPIECE_PREFIX + record.patch
                 file.add_message(topic, _ns(record), messages.patch(record))
             case RunSummary():
-                self._end_pose(file)
+                self._end(file)
                 file.flush()
                 file.add_metadata(meta.SUMMARY, meta.sealed(meta.summary_metadata(record)))
 
@@ -106,12 +108,15 @@ class RunWriter:
             if tool := self._tools.get(step.tool):
                 file.add_message(schemas.TOOL_SHAPE_TOPIC, time_ns, messages.tool_shape(step.t_s, tool))
         file.add_message(schemas.POSE_TOPIC, time_ns, messages.pose(step.t_s, step.start_mm))
-        file.add_message(schemas.ENGAGEMENT_TOPIC, time_ns, messages.engagement(step))
-        file.add_forces(step)
+        keep = self._samples == "all" or (self._samples == "cutting" and step.engagement.cutting)
+        count = len(step.samples.t_s) if keep else 0
+        file.add_message(schemas.ENGAGEMENT_TOPIC, time_ns, messages.engagement(step, count))
+        file.add_forces(step, keep=keep)
         self._last = step
 
-    def _end_pose(self, file: Container) -> None:
-        """Position of the tool after the last step."""
+    def _end(self, file: Container) -> None:
+        """Position of the tool after the last step, and the last spindle revolution."""
+        file.end_forces()
         if self._last is not None:
             end_s = self._last.t_s + self._last.duration_s
             file.add_message(schemas.POSE_TOPIC, to_ns(end_s), messages.pose(end_s, self._last.end_mm))

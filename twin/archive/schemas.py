@@ -22,6 +22,10 @@ LIBRARY = "machining-twin"
 WITH_CHECKSUMS = ", archive 2"
 ENCODING = "protobuf"
 
+#: Force samples of many steps in a message, and what viewers show of them.
+PACKED_TOPIC = "/force/packed"
+REVOLUTION_TOPIC = "/force/revolution"
+#: Each force sample, in the files of versions up to 0.1.0.
 FORCE_TOPIC = "/force"
 ENGAGEMENT_TOPIC = "/engagement"
 POSE_TOPIC = "/machine/tool"
@@ -32,6 +36,8 @@ COMPARISON_TOPIC = "/compare/force"
 #: Every patch of the workpiece has its own topic, ``/workpiece/<patch>``, so that a viewer replaces only that patch.
 WORKPIECE_PREFIX = "/workpiece/"
 
+PACKED = "twin.PackedForces"
+REVOLUTION = "twin.RevolutionForce"
 FORCE = "twin.CuttingForce"
 ENGAGEMENT = "twin.Engagement"
 COMPARISON = "twin.ComparedForce"
@@ -41,6 +47,8 @@ LOG = "foxglove.Log"
 
 #: Message on each topic; a topic that is not listed is a patch of the workpiece and carries `CLOUD`.
 TOPICS: dict[str, str] = {
+    PACKED_TOPIC: PACKED,
+    REVOLUTION_TOPIC: REVOLUTION,
     FORCE_TOPIC: FORCE,
     ENGAGEMENT_TOPIC: ENGAGEMENT,
     POSE_TOPIC: TRANSFORM,
@@ -59,6 +67,38 @@ Field: TypeAlias = tuple[str, int, str]
 
 #: Fields (name, number, type) of every message; ``repeated`` precedes the type, as in a .proto file.
 MESSAGES: dict[str, tuple[Field, ...]] = {
+    PACKED: (
+        ("samples", 1, "repeated uint32"),
+        ("nc_line", 2, "repeated uint32"),
+        ("tool", 3, "repeated uint32"),
+        ("t_s", 4, "bytes"),
+        ("spindle_angle_rad", 5, "bytes"),
+        ("force_exponent", 6, "repeated sint32"),
+        ("fx_n", 7, "bytes"),
+        ("fy_n", 8, "bytes"),
+        ("fz_n", 9, "bytes"),
+        ("torque_exponent", 10, "repeated sint32"),
+        ("torque_nm", 11, "bytes"),
+        ("power_exponent", 12, "repeated sint32"),
+        ("power_w", 13, "bytes"),
+    ),
+    REVOLUTION: (
+        ("t_s", 1, "double"),
+        ("fx_lowest_n", 2, "float"),
+        ("fx_highest_n", 3, "float"),
+        ("fx_mean_n", 4, "float"),
+        ("fy_lowest_n", 5, "float"),
+        ("fy_highest_n", 6, "float"),
+        ("fy_mean_n", 7, "float"),
+        ("fz_lowest_n", 8, "float"),
+        ("fz_highest_n", 9, "float"),
+        ("fz_mean_n", 10, "float"),
+        ("resultant_highest_n", 11, "float"),
+        ("resultant_mean_n", 12, "float"),
+        ("torque_highest_nm", 13, "float"),
+        ("torque_mean_nm", 14, "float"),
+        ("nc_line", 15, "fixed32"),
+    ),
     FORCE: (
         ("t_s", 1, "double"),
         ("spindle_angle_rad", 2, "double"),
@@ -128,6 +168,9 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         ("t_s", 100, "double"),
         ("patch", 101, "string"),
         ("triangles", 102, "bytes"),
+        ("triangle_count", 103, "uint32"),
+        ("packed_triangles", 104, "bytes"),
+        ("packed_normals", 105, "bytes"),
     ),
     LOG: (
         ("timestamp", 1, _TIMESTAMP),
@@ -157,9 +200,11 @@ UINT8, FLOAT32 = 1, 7
 _Proto = descriptor_pb2.FieldDescriptorProto
 _SCALARS: dict[str, Any] = {
     "double": _Proto.TYPE_DOUBLE,
+    "float": _Proto.TYPE_FLOAT,
     "fixed32": _Proto.TYPE_FIXED32,
     "uint32": _Proto.TYPE_UINT32,
     "uint64": _Proto.TYPE_UINT64,
+    "sint32": _Proto.TYPE_SINT32,
     "bool": _Proto.TYPE_BOOL,
     "string": _Proto.TYPE_STRING,
     "bytes": _Proto.TYPE_BYTES,

@@ -288,6 +288,11 @@ class Output(Table):
         default=None, description="rerun recording (.rrd), relative to the job file's folder"
     )
     force_on: ForceOn = Field(default="tool", description="body on which the forces in summary and export act")
+    samples: Literal["all", "revolution", "cutting"] = Field(
+        default="all",
+        description="force samples in the archive: all of them, those of steps that cut (cutting), or only the lowest, "
+        "highest and mean values of each spindle revolution (revolution), without which nothing can be compared",
+    )
 
 
 class Measured(CompareSettings, LogFile):

@@ -51,6 +51,12 @@ def make_header() -> RunHeader:
     )
 
 
+def storable(values: np.ndarray) -> np.ndarray:
+    """Forces of a step as a file can hold them: whole multiples of a power of two, about a millionth of the largest."""
+    exponent = np.frexp(np.abs(values).max(initial=0.0))[1]
+    return np.ldexp(np.rint(np.ldexp(values, 20 - exponent)), exponent - 20)
+
+
 def make_step(index: int, samples: int = 5, tool: int = 1, seed: int = 0) -> Step:
     rng = np.random.default_rng([seed, index])
     t_s = (index * 5 + np.arange(samples)) * DT_S
@@ -71,21 +77,21 @@ def make_step(index: int, samples: int = 5, tool: int = 1, seed: int = 0) -> Ste
         samples=ForceSamples(
             t_s=t_s,
             spindle_angle_rad=-t_s * 120 * np.pi,
-            force_n=rng.normal(0.0, 50.0, (samples, 3)),
-            torque_nm=rng.uniform(0.0, 1.0, samples),
-            power_w=rng.uniform(0.0, 300.0, samples),
+            force_n=storable(rng.normal(0.0, 50.0, (samples, 3))),
+            torque_nm=storable(rng.uniform(0.0, 1.0, samples)),
+            power_w=storable(rng.uniform(0.0, 300.0, samples)),
         ),
     )
 
 
 def make_patch(t_s: float, name: str, seed: int, n: int = 7) -> WorkpiecePatch:
     rng = np.random.default_rng(seed)
-    normals = rng.normal(size=(n, 3))
+    axes = np.concatenate([np.eye(3, dtype=np.float32), 0.0 - np.eye(3, dtype=np.float32)])
     return WorkpiecePatch(
         t_s=t_s,
         patch=name,
         vertices_mm=rng.normal(0.0, 30.0, (n, 3)).astype(np.float32),
-        normals=(normals / np.linalg.norm(normals, axis=1, keepdims=True)).astype(np.float32),
+        normals=axes[rng.integers(0, 6, n)],
         triangles=rng.integers(0, max(n, 1), (2 * n, 3), dtype=np.uint32),
     )
 

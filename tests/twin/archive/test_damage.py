@@ -59,7 +59,9 @@ def test_a_file_cut_anywhere_gives_what_came_before(small, same, tmp_path, share
     same(got, records[: len(got)])
     info = run_info(cut)
     assert (info.intact, info.complete) == (False, False)
-    assert sum(info.counts.values()) >= sum(len(r.samples.t_s) for r in got if isinstance(r, Step))
+    steps = [r for r in got if isinstance(r, Step)]
+    assert info.counts.get("/engagement", 0) >= len(steps)
+    assert info.counts.get("/force/packed", 0) > 0 or not any(len(s.samples.t_s) for s in steps)
 
 
 def test_longer_pieces_hold_more_of_the_run(small, tmp_path):

@@ -45,18 +45,19 @@ def test_the_library_reads_every_message_both_ways(path):
         statistics = make_reader(stream).get_summary().statistics
         stream.seek(0)
         in_sequence = list(NonSeekingReader(stream, validate_crcs=True).iter_messages(log_time_order=False))
-    assert len(decoded(path)) == len(in_sequence) == statistics.message_count == 93
+    assert len(decoded(path)) == len(in_sequence) == statistics.message_count == 45
     assert statistics.chunk_count > 4
 
 
 def test_the_index_leads_to_every_force_message(path, run_records):
-    steps = [r for r in run_records if isinstance(r, Step)]
-    force = np.concatenate([s.samples.force_n for s in steps])
-    forces = decoded(path, topics=["/force"])
-    np.testing.assert_array_equal([(m.fx_n, m.fy_n, m.fz_n) for _, _, m in forces], force)
-    assert [m.log_time for _, m, _ in forces] == [round(m.t_s * 1e9) for _, _, m in forces]
-    assert [m.sequence for _, m, _ in forces] == list(range(len(force)))
-    assert [m.nc_line for _, _, m in forces] == [s.nc_line for s in steps for _ in s.samples.t_s]
+    steps = [r for r in run_records if isinstance(r, Step) and len(r.samples.t_s)]
+    forces = decoded(path, topics=["/force/packed"])
+    assert [n for _, _, m in forces for n in m.samples] == [len(s.samples.t_s) for s in steps]
+    assert [n for _, _, m in forces for n in m.nc_line] == [s.nc_line for s in steps]
+    assert [n for _, _, m in forces for n in m.tool] == [s.tool for s in steps]
+    ends = np.cumsum([len(m.samples) for _, _, m in forces]) - 1
+    assert [m.log_time for _, m, _ in forces] == [round(steps[i].samples.t_s[-1] * 1e9) for i in ends]
+    assert [m.sequence for _, m, _ in forces] == list(range(len(forces)))
 
 
 def test_every_entry_of_every_message_index_points_to_its_message(path):
@@ -89,7 +90,7 @@ def test_summary_section(path):
         metadata = {m.name: m.metadata for m in reader.iter_metadata()}
     statistics = summary.statistics
     topics = {summary.channels[c].topic: n for c, n in statistics.channel_message_counts.items()}
-    assert topics["/force"] == 55
+    assert (topics["/force/packed"], topics["/force/revolution"]) == (5, 2)
     assert (statistics.message_start_time, statistics.message_end_time) == (0, round(60 / 21600 * 1e9))
     assert sum(sum(1 for _ in c.message_index_offsets) > 0 for c in summary.chunk_indexes) == statistics.chunk_count
     assert list(metadata) == ["twin.parameters", "twin.run", "twin.summary"]
@@ -202,8 +203,8 @@ def test_rerun_accepts_a_whole_file_and_recovers_a_cut_one(path, tmp_path):
         return done.stdout
 
     checked = rerun("check", "--full", str(path))
-    assert len(re.findall(r"^ok ", checked, re.MULTILINE)) == 8
-    assert re.search(r"Messages +93\n", rerun("info", str(path)))
+    assert len(re.findall(r"^ok ", checked, re.MULTILINE)) == 9
+    assert re.search(r"Messages +45\n", rerun("info", str(path)))
     cut = tmp_path / "cut.partial.mcap"
     cut.write_bytes(path.read_bytes()[:-2500])
     assert "/force" in rerun("check", "--recover", str(cut))

@@ -18,7 +18,7 @@ from rerun.experimental import ViewerClient
 
 from tests.support.ports import free_port
 from tests.support.slot_run import BOX, SlotRun
-from twin.archive.schemas import FORCE, FORCE_TOPIC, MESSAGES
+from twin.archive.schemas import MESSAGES, REVOLUTION, REVOLUTION_TOPIC
 from twin.errors import ArchiveError
 from twin.sinks.mcap_sink import McapSink
 from twin.sinks.rerun import layout
@@ -27,7 +27,7 @@ from twin.sinks.rerun.sink import RerunSink
 
 RUN = SlotRun(step_mm=1.0, per_turn=36)
 RERUN = Path(sysconfig.get_path("scripts")) / "rerun"
-ARCHIVED = (*layout.FORCES, layout.TORQUE)
+ARCHIVED = (*layout.ENVELOPE.series, *layout.RESULTANT_CURVES.series, *layout.TORQUE_CURVES.series)
 VIEWS = {
     "Part, tool and path coloured by resultant force",
     "NC program",
@@ -68,10 +68,10 @@ def test_the_shipped_blueprint_is_the_present_one(tmp_path: Path) -> None:
 
 
 def test_the_mapped_fields_are_fields_of_the_archive() -> None:
-    fields = {name for name, _, _ in MESSAGES[FORCE]}
+    fields = {name for name, _, _ in MESSAGES[REVOLUTION]}
     assert {s.archive_field for s in ARCHIVED} <= fields
-    assert f"{FORCE}:message" == layout.ARCHIVE_FORCE_COMPONENT
-    assert f"/{layout.ARCHIVE_FORCE}" == FORCE_TOPIC
+    assert f"{REVOLUTION}:message" == layout.ARCHIVE_FORCE_COMPONENT
+    assert f"/{layout.ARCHIVE_FORCE}" == REVOLUTION_TOPIC
 
 
 def test_a_recording_carries_its_blueprint(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import numpy as np
 from mcap.opcode import Opcode
 from mcap.records import (
     Attachment,
@@ -25,13 +26,15 @@ from mcap.records import (
 )
 
 from twin.archive import schemas
-from twin.archive.container.chunk import ChunkBuilder, FinishedChunk, to_bytes
-from twin.archive.forces import ForceLayout
+from twin.archive.container.chunk import ChunkBuilder, FinishedChunk, to_bytes, to_ns
+from twin.archive.samples import packed
+from twin.archive.samples.fixed_records import FixedRecords
+from twin.archive.samples.revolutions import Revolutions
 from twin.record import Step
 
 MAGIC = b"\x89MCAP0\r\n"
-#: The force topic's channel is the first one of every file.
-FORCE_CHANNEL = 1
+#: Bytes that a force sample counts as before it is packed: those of a message of its own.
+_SAMPLE_BYTES = 104
 
 
 @dataclass(slots=True)
@@ -55,10 +58,12 @@ class Container:
     _chunks: list[ChunkIndex] = field(default_factory=list)
     _attachments: list[AttachmentIndex] = field(default_factory=list)
     _metadata: list[MetadataIndex] = field(default_factory=list)
-    _layout: ForceLayout = field(default_factory=lambda: ForceLayout.of(FORCE_CHANNEL))
     _builder: ChunkBuilder | None = None
     _span: tuple[int, int] | None = None
     _sequence: dict[int, int] = field(default_factory=dict)
+    _steps: list[tuple[Step, bool]] = field(default_factory=list)
+    _samples: int = 0
+    _revolutions: Revolutions = field(default_factory=Revolutions)
 
     def start(self) -> None:
         """Write the magic and the header."""
@@ -66,8 +71,8 @@ class Container:
 
     @property
     def pending_bytes(self) -> int:
-        """Uncompressed size of the records that are not in a chunk of the file yet."""
-        return self._builder.size if self._builder else 0
+        """Size of the records that are not in a chunk of the file yet, each force sample as a message of its own."""
+        return (self._builder.size if self._builder else 0) + self._samples * _SAMPLE_BYTES
 
     def add_attachment(self, name: str, media_type: str, data: bytes) -> None:
         """Attach a file."""
@@ -86,21 +91,31 @@ class Container:
     def add_message(self, topic: str, time_ns: int, payload: bytes) -> None:
         """Add one message; it is in the file after `flush`."""
         channel = self._channel(topic)
-        sequence = self._sequence.get(channel, 0)
-        self._sequence[channel] = sequence + 1
+        sequence = self._numbers(channel, 1)
         self._chunk().add_message(channel, sequence & 0xFFFFFFFF, time_ns, payload)
 
-    def add_forces(self, step: Step) -> None:
-        """Add the force samples of one step; they are in the file after `flush`."""
+    def add_forces(self, step: Step, *, keep: bool) -> None:
+        """Add the force samples of one step; they are in the file after `flush`.
+
+        Args:
+            keep: keep the samples, and not the values of each revolution alone.
+        """
         if len(step.samples.t_s):
-            self._channel(schemas.FORCE_TOPIC)
-            self._chunk().add_forces(step)
+            self._steps.append((step, keep))
+            self._samples += len(step.samples.t_s)
+
+    def end_forces(self) -> None:
+        """Add the spindle revolution in progress, after the last force samples."""
+        self._pack_forces()
+        if schemas.REVOLUTION_TOPIC in self._channels:
+            self._add_revolutions([])
 
     def flush(self) -> None:
         """Complete the chunk: all that was added so far is in the file."""
+        self._pack_forces()
         if self._builder is None:
             return
-        chunk = self._builder.finish(self._counts.get(FORCE_CHANNEL, 0))
+        chunk = self._builder.finish()
         self._builder = None
         start = self._offset
         indexes = b"".join(chunk.indexes.values())
@@ -134,13 +149,41 @@ class Container:
 
     def _chunk(self) -> ChunkBuilder:
         if self._builder is None:
-            self._builder = ChunkBuilder(self._layout, FORCE_CHANNEL)
+            self._builder = ChunkBuilder()
         return self._builder
+
+    def _pack_forces(self) -> None:
+        """Add the force samples that were taken, and the revolutions that they complete."""
+        if not self._steps:
+            return
+        kept = [step for step, is_kept in self._steps if is_kept]
+        if kept:
+            self.add_message(schemas.PACKED_TOPIC, to_ns(float(kept[-1].samples.t_s[-1])), packed.encode(kept))
+        self._add_revolutions([step for step, _ in self._steps])
+        self._steps.clear()
+        self._samples = 0
+
+    def _add_revolutions(self, steps: list[Step]) -> None:
+        """Add the revolutions that steps complete, or the one in progress if there are none."""
+        channel = self._channel(schemas.REVOLUTION_TOPIC)
+        layout, sequence = FixedRecords.of(channel, schemas.REVOLUTION), self._sequence.get(channel, 0)
+        made = self._revolutions
+        with np.errstate(over="ignore", invalid="ignore"):  # in single precision
+            records = made.records(steps, layout, sequence) if steps else made.rest(layout, sequence)
+        if len(records):
+            self._numbers(channel, len(records))
+            self._chunk().add_records(channel, records)
+
+    def _numbers(self, channel: int, count: int) -> int:
+        """Sequence number of the first of some further messages on a channel."""
+        sequence = self._sequence.get(channel, 0)
+        self._sequence[channel] = sequence + count
+        return sequence
 
     def _channel(self, topic: str) -> int:
         """Number of a topic's channel, registered in the chunk at hand when it is new."""
         if topic not in self._channels:
-            number = FORCE_CHANNEL if topic == schemas.FORCE_TOPIC else len(self._channels) + FORCE_CHANNEL + 1
+            number = len(self._channels) + 1
             schema = self._schema(schemas.message_on(topic))
             self._channels[topic] = Channel(number, topic, schemas.ENCODING, {}, schema.id)
             self._chunk().add_record(self._channels[topic])

@@ -1,7 +1,8 @@
 """Layout of the timeline: the part at the top, the NC blocks on its right, the forces below.
 
 The same blueprint is used for a recording of `twin.sinks.rerun.sink.RerunSink` and for an archive that rerun itself
-reads: force curves come from ``force/x|y|z`` in the former and from fields of the messages on ``/force`` in the latter.
+reads: force curves come from ``force/...`` in the former and from fields of the messages on ``/force/revolution`` in
+the latter.
 """
 
 from __future__ import annotations
@@ -120,7 +121,7 @@ def _summary() -> rrb.TextDocumentView:
 
 
 def _curves(name: str, curves: layout.Curves, *, close: bool = False, marks: bool = False) -> rrb.TimeSeriesView:
-    """Curves over the whole run, or around the cursor; an archive that the viewer reads itself has the samples only."""
+    """Curves over the whole run, or around the cursor; an archive that the viewer reads itself has no samples."""
     around = [
         rr.VisibleTimeRange(
             timeline,

@@ -36,32 +36,38 @@ class Series:
     Attributes:
         name: what the legend says.
         unit: of its values.
-        archive_field: name of the field of a ``twin.CuttingForce`` message, empty without one.
+        archive_field: its field in a ``twin.RevolutionForce`` message of an archive; of samples, with ``{}`` for
+            ``lowest``, ``highest`` or ``mean``.
     """
 
     name: str
     unit: str
     color: Rgb
-    archive_field: str = ""
+    archive_field: str
 
     @property
     def label(self) -> str:
         """Name and unit."""
         return f"{self.name} [{self.unit}]"
 
-    def of(self, which: str, color: Rgb | None = None) -> Series:
-        """The lowest, highest or mean values of this one."""
-        return Series(f"{self.name} {which}", self.unit, self.color if color is None else color)
+    def of(self, which: str, color: Rgb | None = None, *, label: str | None = None) -> Series:
+        """The lowest, highest or mean values of this one.
+
+        Args:
+            label: what the legend calls them.
+        """
+        field = self.archive_field.format(which)
+        return Series(f"{self.name} {label or which}", self.unit, self.color if color is None else color, field)
 
 
 #: Red, green and blue as the axes of the 3D view, in hues that colour-blind people can distinguish.
 FORCES = (
-    Series("Fx", "N", (240, 96, 56), "fx_n"),
-    Series("Fy", "N", (38, 186, 138), "fy_n"),
-    Series("Fz", "N", (92, 172, 250), "fz_n"),
+    Series("Fx", "N", (240, 96, 56), "fx_{}_n"),
+    Series("Fy", "N", (38, 186, 138), "fy_{}_n"),
+    Series("Fz", "N", (92, 172, 250), "fz_{}_n"),
 )
-RESULTANT = Series("resultant", "N", (176, 128, 244))
-TORQUE = Series("torque", "N·m", (224, 176, 46), "torque_nm")
+RESULTANT = Series("resultant", "N", (176, 128, 244), "resultant_{}_n")
+TORQUE = Series("torque", "N·m", (224, 176, 46), "torque_{}_nm")
 _DARK: tuple[Rgb, ...] = ((178, 72, 46), (28, 132, 100), (66, 118, 178))
 
 
@@ -88,7 +94,7 @@ ENVELOPE = Curves(
     tuple(
         curve
         for force, dark in zip(FORCES, _DARK, strict=True)
-        for curve in (force.of("range"), force.of("range"), force.of("mean", dark))
+        for curve in (force.of("lowest", label="range"), force.of("highest", label="range"), force.of("mean", dark))
     ),
 )
 RESULTANT_CURVES = Curves("force/resultant", (RESULTANT.of("highest"), RESULTANT.of("mean", (122, 90, 172))))
@@ -97,18 +103,18 @@ CURVES = (SAMPLES, ENVELOPE, RESULTANT_CURVES, TORQUE_CURVES)
 
 #: Curves of an archive that the viewer reads itself, in the view of each of these.
 ARCHIVED: dict[str, tuple[Series, ...]] = {
-    SAMPLES.entity: FORCES,
-    ENVELOPE.entity: FORCES,
-    RESULTANT_CURVES.entity: (),
-    TORQUE_CURVES.entity: (TORQUE,),
+    SAMPLES.entity: ENVELOPE.series,
+    ENVELOPE.entity: ENVELOPE.series,
+    RESULTANT_CURVES.entity: RESULTANT_CURVES.series,
+    TORQUE_CURVES.entity: TORQUE_CURVES.series,
 }
 
 #: Marks on the time axis of the resultant.
 COLLISION_MARK, WARNING_MARK = "marks/collision", "marks/warning"
 
-#: Topics of the archive that have the same data (docs/archive-format.md).
-ARCHIVE_FORCE = "force"
-ARCHIVE_FORCE_COMPONENT = "twin.CuttingForce:message"
+#: Topic of the archive that has the same data (docs/archive-format.md), and what the viewer calls its messages.
+ARCHIVE_FORCE = "force/revolution"
+ARCHIVE_FORCE_COMPONENT = "twin.RevolutionForce:message"
 
 #: Direction from what the camera looks at to the eye, in half diagonals of its box.
 EYE = (-0.95, -1.45, 1.15)
