@@ -58,7 +58,7 @@ def test_what_is_not_given_has_the_documented_default(tmp_path: Path) -> None:
         "store": "fast",
         "preview_pitch_mm": None,
     }
-    assert job.output.model_dump() == {"mcap": None, "rrd": None, "force_on": "tool"}
+    assert job.output.model_dump() == {"mcap": None, "rrd": None, "force_on": "tool", "samples": "all"}
     assert (job.stock.wcs, job.stock.stl_scale, job.stock.offset_mm) == ("G54", 1.0, (0.0, 0.0, 0.0))
     assert not job.forces
 

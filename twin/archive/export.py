@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO, get_args
 from twin.archive.container.partial import replacing
 from twin.archive.force_table import force_schema, force_tables
 from twin.archive.reader import read_run
+from twin.archive.run_metadata import without_samples
 from twin.errors import ArchiveError
+from twin.record import Record, RunHeader
 from twin.settings.force_on import ForceOn
 
 if TYPE_CHECKING:
@@ -34,7 +36,19 @@ def read_forces(path: str | PathLike[str], on: ForceOn = "tool") -> pa.Table:
     import pyarrow as pa
 
     _check_on(on)
-    return pa.concat_tables(force_tables(read_run(path), on))
+    return pa.concat_tables(force_tables(force_records(path), on))
+
+
+def force_records(path: str | PathLike[str]) -> Iterator[Record]:
+    """The records of a run whose force samples are wanted.
+
+    Raises:
+        ArchiveError: see `twin.archive.read_run`; or the archive keeps the values of each revolution only.
+    """
+    for record in read_run(path):
+        if isinstance(record, RunHeader) and (reason := without_samples(record)):
+            raise ArchiveError(f"{path}: {reason}")
+        yield record
 
 
 def export_forces(run: str | PathLike[str], out: str | PathLike[str], on: ForceOn = "tool", force: bool = False) -> int:
@@ -58,7 +72,7 @@ def export_forces(run: str | PathLike[str], out: str | PathLike[str], on: ForceO
     _check_on(on)
     if target.exists() and not force:
         raise ArchiveError(f"{target}: already exists; replace it with --force")
-    tables = force_tables(read_run(run), on)
+    tables = force_tables(force_records(run), on)
     first = next(tables)
     rows = 0
     with replacing(target) as partial, writer(partial, force_schema(on)) as sink:
@@ -76,7 +90,7 @@ def write_csv(run: str | PathLike[str], stream: BinaryIO, on: ForceOn = "tool") 
         OSError: the stream cannot be written, or its reader is gone.
     """
     _check_on(on)
-    tables = force_tables(read_run(run), on)
+    tables = force_tables(force_records(run), on)
     first = next(tables)
     with _csv_to(stream, force_schema(on)) as sink:
         for table in chain([first], tables):

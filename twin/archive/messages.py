@@ -171,7 +171,7 @@ def _normals(data: bytes, count: int) -> NDArray[np.float32]:
     """Unit normals of a patch, shape (count, 3).
 
     Raises:
-        ValueError: not so many.
+        ValueError: another number of them.
     """
     normals = np.frombuffer(data, np.int8).reshape(count, 3).astype(np.float32)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.float32(1.0))
@@ -183,7 +183,7 @@ def _corners(message: Any) -> NDArray[np.uint32]:
     """Vertices of the triangles of a patch, three of each.
 
     Raises:
-        ValueError: not so many as the message states.
+        ValueError: fewer than the message states.
     """
     if message.triangle_count > len(message.packed_triangles):
         raise ValueError(f"{message.triangle_count} triangles in {len(message.packed_triangles)} bytes")

@@ -65,6 +65,13 @@ def kept_samples(header: RunHeader) -> str:
     return header.parameters.get(_SAMPLES, "all")
 
 
+def without_samples(header: RunHeader) -> str:
+    """Why the archive of a run has no force samples, empty if it has them."""
+    if kept_samples(header) != "revolution":
+        return ""
+    return f'holds no force samples ({_SAMPLES} = "revolution"); replay its job with {_SAMPLES} = "all"'
+
+
 def tool_table(tools: Sequence[ToolRecord]) -> bytes:
     """The tools as JSON: number, description, profile_mm (radius and height above the tip)."""
     rows = [{"number": t.number, "description": t.description, "profile_mm": t.profile_mm.tolist()} for t in tools]

@@ -102,6 +102,8 @@ def run_forces(path: Path, records: Iterable[Record]) -> RunForces:
     Raises:
         CompareError: a run without forces.
     """
+    from twin.archive.run_metadata import without_samples
+
     header, digest = None, ""
     times: list[FloatArray] = []
     forces: list[FloatArray] = []
@@ -117,6 +119,8 @@ def run_forces(path: Path, records: Iterable[Record]) -> RunForces:
                 end_s = record.t_s + record.duration_s
                 rows.append((record.t_s, end_s, record.spindle_rpm, record.tool, record.engagement.cutting))
                 _take(record, times, forces, angles)
+    if header is not None and (reason := without_samples(header)):
+        raise CompareError(f"{path}: {reason}")
     if header is None or not rows or not any(np.any(f) for f in forces):
         raise CompareError(f"{path}: a run without forces; replay its job with cutting coefficients")
     t_s, force, angle = np.concatenate(times), np.concatenate(forces), np.concatenate(angles)

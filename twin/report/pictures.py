@@ -77,7 +77,7 @@ def _frame(axes: Axes, contents: ReportContents) -> None:
 def over_time(contents: ReportContents) -> bytes:
     """Forces, power and engagement over machine time: the band between least and largest value of each column."""
     bins = contents.bins
-    forces = contents.summary.samples > 0
+    forces = bool(np.isfinite(bins.low_n).any())
     figure, parts = stack(4 if forces else 1, 1.75)
     if forces:
         for i, axis in enumerate("xyz"):

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from twin.archive import RunInfo, read_forces, read_run, run_info
 from twin.archive.container.partial import copy_file
+from twin.archive.export import force_records
 from twin.archive.force_table import array_batches, joined_arrays
 from twin.errors import ArchiveError
 from twin.record import Collision, NcEvent, Record, RunHeader, RunSummary, WorkpiecePatch
@@ -99,8 +100,11 @@ class Run:
         - ``nc_line``, ``tool``: line of the NC program and tool number, int32.
 
         The names are those of ``twin export`` and of `to_arrow`.
+
+        Raises:
+            ArchiveError: the archive is damaged, or was written with ``[output] samples = "revolution"``.
         """
-        columns = joined_arrays(self.records())
+        columns = joined_arrays(force_records(self.path))
         for values in columns.values():
             values.flags.writeable = False
         return MappingProxyType(columns)

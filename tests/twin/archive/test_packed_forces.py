@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,8 @@ from twin.archive.container.container import Container
 from twin.archive.run_writer import RunWriter
 from twin.archive.samples import packed
 from twin.archive.samples.columns import pack, unpack
-from twin.errors import ArchiveError
+from twin.comparison.run_forces import read_run_forces
+from twin.errors import ArchiveError, CompareError
 from twin.record import ForceSamples, Record, RunHeader, Step, WorkpiecePatch
 
 Steps = Callable[..., Step]
@@ -147,7 +149,14 @@ def test_the_job_chooses_the_samples(
     steps = turns(new_step, range(2, 6))
     steps = [s if i not in range(2, 6) else air(s) for i, s in enumerate(steps)]
     path = write(with_samples([run_records[0], *steps, run_records[-1]], kept))
-    assert read_forces(path).num_rows == rows
+    if rows:
+        assert read_forces(path).num_rows == rows
+    else:
+        reason = 'holds no force samples (output.samples = "revolution"); replay its job with output.samples = "all"'
+        with pytest.raises(ArchiveError, match=rf"^{path}: {re.escape(reason)}$"):
+            read_forces(path)
+        with pytest.raises(CompareError, match=rf"^{path}: {re.escape(reason)}$"):
+            read_run_forces(path)
     assert len(revolutions(path)) == 6
     assert len([r for r in read_run(path) if isinstance(r, Step)]) == 8
     assert run_info(path, verify=True).damage is None

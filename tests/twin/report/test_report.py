@@ -75,7 +75,7 @@ def test_the_worst_position_is_on_the_path_and_shows_two_revolutions(contents: R
     x, y, z = worst.forces.point_mm
     assert 0.0 <= x <= 4.0 and y == pytest.approx(0.0, abs=1e-9) and z == pytest.approx(-2.0, abs=1e-9)
     assert np.ptp(worst.t_s) == pytest.approx(2.0 * 60.0 / 3600.0, rel=0.05)
-    assert np.linalg.norm(worst.force_n, axis=1).max() == pytest.approx(contents.summary.peak_force_n[3], rel=1e-9)
+    assert np.linalg.norm(worst.force_n, axis=1).max() == pytest.approx(contents.summary.peak_force_n[3], rel=2e-6)
 
 
 def test_positions_are_a_diameter_apart(contents: ReportContents) -> None:
