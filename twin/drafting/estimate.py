@@ -31,7 +31,7 @@ _SLICE_S, _FORCED_SLICE_S, _SAMPLE_S = 0.2e-3, 0.35e-3, 2.5e-6
 _PIECE_MM = 1.0
 #: Bytes of a force sample, of a step, and of a byte of the meshes of the part: in the archive, and in a recording. In
 #: the archive a sample takes 1 byte where each revolution is like the one before, and 8 where no two are alike.
-_ARCHIVE_B = (2.0, 120.0, 0.18)
+_ARCHIVE_B = (1.5, 120.0, 0.12)
 _RECORDING_B = (21.0, 400.0, 0.8)
 #: Bytes of the meshes for each second of feed motion in the stock: straight and level with a flat tool, which leaves
 #: large planes, and otherwise; and for each cell of the surface at the end.
