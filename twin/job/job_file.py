@@ -19,6 +19,7 @@ from twin.measured.settings import CompareSettings, LogFile
 from twin.settings.check import checked
 from twin.settings.facts import Facts
 from twin.settings.force_on import ForceOn
+from twin.settings.kept_samples import KeptSamples
 from twin.settings.json_schema import toml_schema
 from twin.settings.table import FilePath, Key, Point, Table
 
@@ -288,11 +289,7 @@ class Output(Table):
         default=None, description="rerun recording (.rrd), relative to the job file's folder"
     )
     force_on: ForceOn = Field(default="tool", description="body on which the forces in summary and export act")
-    samples: Literal["all", "revolution", "cutting"] = Field(
-        default="all",
-        description="force samples in the archive: all of them, those of steps that cut (cutting), or only the lowest, "
-        "highest and mean values of each spindle revolution (revolution), without which nothing can be compared",
-    )
+    samples: KeptSamples = Field(default="all", description="force samples in the archive (archive-format.md)")
 
 
 class Measured(CompareSettings, LogFile):
