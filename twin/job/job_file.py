@@ -19,8 +19,8 @@ from twin.measured.settings import CompareSettings, LogFile
 from twin.settings.check import checked
 from twin.settings.facts import Facts
 from twin.settings.force_on import ForceOn
-from twin.settings.kept_samples import KeptSamples
 from twin.settings.json_schema import toml_schema
+from twin.settings.kept_samples import KeptSamples
 from twin.settings.table import FilePath, Key, Point, Table
 
 SixNumbers: TypeAlias = Annotated[tuple[float, float, float, float, float, float], Strict(False)]
@@ -289,7 +289,7 @@ class Output(Table):
         default=None, description="rerun recording (.rrd), relative to the job file's folder"
     )
     force_on: ForceOn = Field(default="tool", description="body on which the forces in summary and export act")
-    samples: KeptSamples = Field(default="all", description="force samples in the archive (archive-format.md)")
+    samples: KeptSamples = Field(default="all", description="force samples in the archive: see below")
 
 
 class Measured(CompareSettings, LogFile):
