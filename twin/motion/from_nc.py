@@ -48,12 +48,13 @@ def moves_from_nc(
         GcodeError: for a motion with an axis other than X, Y and Z away from 0.
     """
     gauge = np.array(start_mm) - origin_mm
+    lifts: dict[tuple[float, ...], FloatArray] = {}
     for event in events:
         if isinstance(event, LinearMotion | ArcMotion):
             _refuse_further_axes(event)
             if isinstance(event, LinearMotion) and event.start_mm == event.end_mm:
                 continue
-            move = _move(event, origin_mm, tool_length_mm, rapid_mm_min)
+            move = _move(event, _lift(event.state, origin_mm, tool_length_mm, lifts), rapid_mm_min)
             gauge = move.end_mm + _up(tool_length_mm.get(move.tool, 0.0))
             if move.rapid and axis_rapid_mm_min is not None:
                 yield from independent_legs(move, axis_rapid_mm_min)
@@ -91,10 +92,22 @@ def _signed_rpm(state: MotionState) -> float:
     return state.spindle_rpm * state.spindle_direction
 
 
-def _move(event: Motion, origin: FloatArray, lengths: Mapping[int, float], rapid_mm_min: float) -> Move:
+def _lift(
+    state: MotionState, origin: FloatArray, lengths: Mapping[int, float], known: dict[tuple[float, ...], FloatArray]
+) -> FloatArray:
+    """From machine coordinates of the controlled point to the tool tip in the workpiece frame, shape (3,).
+
+    Args:
+        known: earlier answers, to which this one is added.
+    """
+    key = (*state.tool_offset_xy_mm, state.length_offset_mm, state.tool)
+    if key not in known:
+        known[key] = np.array(key[:3]) - _up(lengths.get(state.tool, 0.0)) - origin
+    return known[key]
+
+
+def _move(event: Motion, lift: FloatArray, rapid_mm_min: float) -> Move:
     state = event.state
-    offset = np.array((*state.tool_offset_xy_mm, state.length_offset_mm))
-    lift = offset - _up(lengths.get(state.tool, 0.0)) - origin
 
     def tip(point: Point) -> FloatArray:
         return np.array(point) + lift

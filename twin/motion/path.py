@@ -95,7 +95,8 @@ class Move:
 def path_length_mm(start_mm: FloatArray, end_mm: FloatArray, arc: Arc | None) -> float:
     """Length of a line, an arc or a helix."""
     if arc is None:
-        return float(np.linalg.norm(end_mm - start_mm))
+        along = end_mm - start_mm
+        return math.sqrt(along.dot(along))
     i, j, k = PLANE_AXES[arc.plane]
     r0 = math.hypot(start_mm[i] - arc.centre_mm[i], start_mm[j] - arc.centre_mm[j])
     r1 = math.hypot(end_mm[i] - arc.centre_mm[i], end_mm[j] - arc.centre_mm[j])

@@ -112,12 +112,13 @@ class ProgramMoves:
                     raise ReplayError(f"{item.place}: tool T{item.tool} is not in the job; expected one of {known}")
                 yield tool_change_s
             elif isinstance(item, Move):
-                if not (item.duration_s < _LONGEST_S and item.length_mm < _FARTHEST_MM):
+                length_mm = item.length_mm
+                if not (item.duration_s < _LONGEST_S and length_mm < _FARTHEST_MM):
                     raise ReplayError(
-                        f"{self.file}:{item.nc_line}: {item.length_mm:.3g} mm in {item.duration_s:.3g} s; expected a "
+                        f"{self.file}:{item.nc_line}: {length_mm:.3g} mm in {item.duration_s:.3g} s; expected a "
                         f"motion or dwell below {_FARTHEST_MM:g} mm and {_LONGEST_S:g} s: check the units and F"
                     )
-                if item.tool == 0 and not item.rapid and item.length_mm > 0.0:
+                if item.tool == 0 and not item.rapid and length_mm > 0.0:
                     raise ReplayError(
                         f"{self.file}:{item.nc_line}: feed motion without a tool in the spindle; "
                         "expected a tool change (T.. M6) before it, program.tool in the job, or --tool N"
