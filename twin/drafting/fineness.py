@@ -75,5 +75,5 @@ def fineness_of(feed: Feed, diameters_mm: Sequence[float], stock_mm: FloatArray,
         pitch_mm=pitch,
         angle_deg=angle,
         pitch_reason=reason,
-        angle_reason=f"{turns * 360.0 / angle:,.0f} force samples in {turns:,.0f} revolutions",
+        angle_reason=f"{turns:,.0f} revolutions; more than {_MOST_SAMPLES:,.0f} samples make large files",
     )

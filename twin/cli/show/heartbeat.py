@@ -102,7 +102,9 @@ class LogProgress:
         # while code is compiled the run stands still; the mean pace since its start means nothing then
         lately = since[0] / since[1] if self._beat.compiled else pace
         moving = since[0] > _MOVING_SHARE * self._total_s or not self._beat.compiled
-        left = f", about {duration((self._total_s - self._t_s) / lately)} left" if lately > 0.0 and moving else ""
+        left = (
+            f", about {duration(max(self._total_s - self._t_s, 0.0) / lately)} left" if lately > 0.0 and moving else ""
+        )
         times = f"{clock(self._t_s)} of {clock(self._total_s)}"
         return f"replaying: {100.0 * share:.0f} %, {times}, {pace:.1f}x real time, line {self._line}{left}"
 
