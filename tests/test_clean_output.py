@@ -20,6 +20,7 @@ from twin.comparison.report import html
 from twin.measured.forces import force_log
 from twin.measured.read import read_log
 from twin.measured.settings import CompareSettings
+from twin.measured.table import distinct
 from twin.settings.toml_text import toml_text
 from twin.sinks.mcap_sink import McapSink
 
@@ -108,6 +109,10 @@ def test_names_are_on_one_line(command: str, tmp_path: Path, capsys: pytest.Capt
         printed = "".join(capsys.readouterr())
         assert "\u240aerror: b\u2409[c].nc" in printed
         assert "\nerror: b" not in printed
+
+
+def test_names_of_columns_are_on_one_line() -> None:
+    assert distinct(["Fx\r\nerror: b", "Fy [N]", "\n", ""]) == ("Fx error: b", "Fy [N]", " ", "column4")
 
 
 def test_tables_take_no_text_as_markup(capsys: pytest.CaptureFixture[str]) -> None:

@@ -75,7 +75,7 @@ def compare_batch(path: Path, base: Callable[[Path], Mapping[str, Any]]) -> Iter
             found, message = None, "; ".join(error.problems)
         except TwinError as error:
             found, message = None, str(error)
-        name = str(cells.get("name") or Path(measured).stem)
+        name = " ".join(str(cells.get("name") or Path(measured).stem).splitlines())
         yield Row(number=number, name=name, run=run, measured=measured, found=found, message=message)
 
 

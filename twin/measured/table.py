@@ -15,6 +15,8 @@ from twin.errors import MeasuredError
 
 #: Most names that a message lists.
 _MOST_NAMED = 100
+#: In a name: text after them would pass for a line of its own.
+_LINE_ENDS = re.compile(r"\s*[\r\n\t\v\f]\s*")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -55,11 +57,11 @@ def few(names: Sequence[str], mark: str = ", ") -> str:
 
 
 def distinct(names: Sequence[str]) -> tuple[str, ...]:
-    """Names that differ: a second ``Fx`` becomes ``Fx (2)``, an empty one ``column3``."""
+    """Names on one line that differ: a second ``Fx`` becomes ``Fx (2)``, an empty one ``column3``."""
     made: list[str] = []
     counts: Counter[str] = Counter()
     for index, name in enumerate(names):
-        base = name or f"column{index + 1}"
+        base = _LINE_ENDS.sub(" ", name) or f"column{index + 1}"
         count = counts[base]
         made.append(base if not count else f"{base} ({count + 1})")
         counts.update([made[-1], *(made[-1][: m.start()] for m in re.finditer(r" \(", made[-1]))])
