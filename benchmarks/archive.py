@@ -2,7 +2,8 @@
 
     python -m benchmarks.archive [--seconds 60] [--repeat 3]
 
-The run is a cut at 3600 rpm with a force sample each degree and a step each 30 ms: 21,600 messages a machine second.
+The run is a cut at 3600 rpm with a force sample each degree and a step each 30 ms: 21,600 samples a machine second. No
+two of its revolutions are alike, or, for the second size, all of them.
 """
 
 from __future__ import annotations
@@ -28,15 +29,24 @@ STEP_S = 0.03
 LIBRARY_SHARE = 10
 
 
-def make_steps(seconds: float) -> list[Step]:
+def make_steps(seconds: float, *, change: float = 0.01) -> list[Step]:
+    """Steps of a cut whose forces change from sample to sample by a part of them."""
+    random = np.random.default_rng(1)
     per_step = round(RATE_HZ * STEP_S)
     steps = []
     for index in range(round(seconds / STEP_S)):
         t_s = (index * per_step + np.arange(per_step)) / RATE_HZ
         angle = 120.0 * np.pi * t_s
         force = np.column_stack([50.0 * np.abs(np.sin(angle)), 30.0 * np.cos(2.0 * angle), np.full(per_step, -10.0)])
+        force *= 1.0 + change * random.normal(size=force.shape)
+        torque = 0.004 * force[:, 0]
+        power = torque * 3600.0 * (2.0 * np.pi / 60.0)
         samples = ForceSamples(
-            t_s=t_s, spindle_angle_rad=angle, force_n=force, torque_nm=0.004 * force[:, 0], power_w=1.5 * force[:, 0]
+            t_s=t_s,
+            spindle_angle_rad=angle,
+            force_n=force,
+            torque_nm=torque,
+            power_w=power,
         )
         steps.append(
             Step(
@@ -101,7 +111,7 @@ def write_with_library(path: Path, steps: list[Step]) -> None:
 
 
 def rate(job: Callable[[], object], messages: int, repeat: int) -> float:
-    """Median of messages a second."""
+    """Median of samples a second."""
     times = []
     for _ in range(repeat):
         start = time.perf_counter()
@@ -121,14 +131,17 @@ def main() -> None:
     part_count = sum(len(s.samples.t_s) for s in part)
     with tempfile.TemporaryDirectory() as folder:
         run, other = Path(folder) / "run.mcap", Path(folder) / "library.mcap"
+        alike = Path(folder) / "alike.mcap"
+        write_run(alike, make_steps(options.seconds, change=0.0))
         report(
             "archive",
-            messages=count,
+            samples=count,
             repeat=options.repeat,
-            write_messages_per_s=rate(lambda: write_run(run, steps), count, options.repeat),
-            library_write_messages_per_s=rate(lambda: write_with_library(other, part), part_count, options.repeat),
-            read_messages_per_s=rate(lambda: read_forces(run), count, options.repeat),
-            bytes_per_message=round(run.stat().st_size / count, 1),
+            write_samples_per_s=rate(lambda: write_run(run, steps), count, options.repeat),
+            library_write_samples_per_s=rate(lambda: write_with_library(other, part), part_count, options.repeat),
+            read_samples_per_s=rate(lambda: read_forces(run), count, options.repeat),
+            bytes_per_sample=round(run.stat().st_size / count, 1),
+            bytes_per_sample_alike=round(alike.stat().st_size / count, 1),
         )
 
 

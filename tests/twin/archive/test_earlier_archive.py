@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import struct
+import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from mcap.opcode import Opcode
+from mcap.records import Chunk
+from mcap.writer import CompressionType
 
 import twin
+from tests.support.rewritten_archive import rewrite
+from twin.archive import read_run
+from twin.archive.container.chunk import to_bytes
+from twin.archive.container.frames import RunFile
 
 ARCHIVE = Path(__file__).parents[2] / "golden" / "archive" / "slot_0_1_0.mcap"
 #: Forces and torque are stored as whole multiples of a unit now, as doubles then; everything else is as it was.
@@ -28,6 +38,27 @@ def test_it_opens_whole(run: twin.Run) -> None:
     assert run.summary.peak_force_n == pytest.approx((20.5, 31.9, 14.9, 35.6), abs=0.05)
     assert np.abs(run.forces["fy_n"]).max() == pytest.approx(run.summary.peak_force_n[1], rel=1e-6)
     assert len(run.mesh().triangles) > 0
+
+
+def test_another_program_may_write_it_anew(run: twin.Run, same: Callable[..., None], tmp_path: Path) -> None:
+    """The messages of single samples with their zeros omitted, which have no fixed size."""
+    rewrite(ARCHIVE, tmp_path / "other.mcap", CompressionType.ZSTD, chunked=True)
+    same(list(twin.open_run(tmp_path / "other.mcap").records()), list(run.records()))
+
+
+def test_a_sample_that_is_lost_in_it_is_damage(tmp_path: Path) -> None:
+    """As a writer would lose it: in a chunk whose checksum is right."""
+    with RunFile(ARCHIVE) as file:
+        first = next(f for f in file.frames() if f.opcode == Opcode.CHUNK)
+        content = file.unpack(first)
+    at = content.index(struct.pack("<BQH", Opcode.MESSAGE, 95, 1))
+    short = content[:at] + content[at + 104 :]
+    path = tmp_path / "lost.mcap"
+    path.write_bytes(
+        ARCHIVE.read_bytes()[: first.offset] + to_bytes(Chunk("", short, 0, 0, zlib.crc32(short), len(short)))
+    )
+    with pytest.raises(twin.ArchiveError, match=r"message 1 on /force after message -1$"):
+        list(read_run(path))
 
 
 def test_its_job_replays_to_the_same_forces(run: twin.Run, tmp_path: Path) -> None:

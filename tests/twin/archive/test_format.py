@@ -15,8 +15,9 @@ import pytest
 from mcap.opcode import Opcode
 from mcap.reader import NonSeekingReader, make_reader
 from mcap.records import MessageIndex
-from mcap.writer import CompressionType, Writer
+from mcap.writer import CompressionType
 
+from tests.support.rewritten_archive import rewrite
 from twin.archive import read_run, run_writer, schemas
 from twin.archive.container.chunk import MESSAGE_HEAD
 from twin.archive.container.frames import RunFile, stream
@@ -120,29 +121,6 @@ def test_the_drawn_tool_lies_on_its_profile(path):
     assert (shape.frame_id, shape.fields[2].name, shape.fields[2].offset) == ("tool", "z", 8)
     assert (xyz[:, 2].min(), xyz[:, 2].max()) == (0.0, 40.0)
     assert np.hypot(xyz[:, 0], xyz[:, 1]).max() == pytest.approx(6.0, abs=1e-5)
-
-
-def rewrite(source: Path, target: Path, compression: CompressionType, chunked: bool) -> None:
-    """Copy a run with the library's own writer, every message packed anew with its zeros left out."""
-    with source.open("rb") as stream:
-        writer = Writer(str(target), compression=compression, use_chunking=chunked, chunk_size=3000)
-        writer.start(profile="twin", library="another program")
-        reader = make_reader(stream)
-        for a in reader.iter_attachments():
-            writer.add_attachment(a.create_time, a.log_time, a.name, a.media_type, a.data)
-        metadata = list(reader.iter_metadata())
-        for entry in metadata[:2]:
-            writer.add_metadata(entry.name, entry.metadata)
-        channels = {}
-        for schema, channel, message in reader.iter_messages(log_time_order=False):
-            if channel.topic not in channels:
-                number = writer.register_schema(schema.name, schema.encoding, schema.data)
-                channels[channel.topic] = writer.register_channel(channel.topic, channel.message_encoding, number)
-            own = schemas.embedded_class(schema.data, schema.name).FromString(message.data)
-            data = own.SerializeToString()
-            writer.add_message(channels[channel.topic], message.log_time, data, message.publish_time)
-        writer.add_metadata(metadata[2].name, metadata[2].metadata)
-        writer.finish()
 
 
 @pytest.mark.parametrize(
