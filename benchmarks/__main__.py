@@ -15,6 +15,7 @@ STAGES = (
     "retraced",
     "archive",
     "gcode",
+    "gcode_commands",
     "offset",
     "paths",
     "drop_cutter",

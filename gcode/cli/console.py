@@ -12,8 +12,6 @@ import time
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, TypeVar
 
-import typer
-
 from gcode.cli.name_lines import on_one_line
 from gcode.underline import harmless, harmless_json
 
@@ -49,18 +47,30 @@ def say(text: str, *, colour: str | None = None, error: bool = False) -> None:
         colour: name of a colour, for terminals.
         error: on standard error.
     """
-    typer.secho(harmless(on_one_line(text)), fg=colour, err=error)
+    _write(harmless(on_one_line(text)), colour, error=error)
+
+
+def _write(text: str, colour: str | None, *, error: bool, bold: bool = False, end: str = "\n") -> None:
+    """Writes a text as it is; colours are for terminals alone."""
+    stream = sys.stderr if error else sys.stdout
+    if stream.isatty():
+        import typer
+
+        typer.secho(text, fg=colour, bold=bold, err=error, nl=bool(end))
+    else:
+        stream.write(text + end)
+        stream.flush()
 
 
 def say_json(text: str) -> None:
     """Prints JSON."""
-    typer.echo(harmless_json(text))
+    _write(harmless_json(text), None, error=False)
 
 
 def fail(message: str) -> None:
     """Prints an error, if standard error takes it."""
     with contextlib.suppress(OSError):
-        typer.secho("error:", fg=typer.colors.RED, bold=True, err=True, nl=False)
+        _write("error:", "red", error=True, bold=True, end="")
         say(f" {message}", error=True)
 
 

@@ -5,17 +5,16 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
-import typer
-
-from gcode.cli import exit_codes
+from gcode.cli import direct, exit_codes
 from gcode.cli.name_lines import set_names
 from gcode.cli.signals import end_in_order, ignore_signals, report_stop
 from gcode.cli.streams import failed_output, finish_streams, prepare_streams
 from gcode.errors import GcodeError
 
-#: Typer's error for a wrong use of the command line. Typer exports this one of its subclasses only.
-_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+if TYPE_CHECKING:
+    import typer
 
 
 def console_script(run: Callable[[Sequence[str]], int]) -> None:
@@ -41,11 +40,17 @@ def run(arguments: Sequence[str]) -> int:
     Returns:
         The exit code, see `gcode.cli.exit_codes`.
     """
-    from gcode.cli.app import app
     from gcode.cli.console import UnusableFileError, fail
 
+    simple = direct.simple_command(arguments)
     try:
-        code = carry_out(app, arguments, "gcode")
+        if simple is not None:
+            set_names(arguments)
+            code = direct.carry_out(simple)
+        else:
+            from gcode.cli.app import app
+
+            code = carry_out(app, arguments, "gcode")
         sys.stdout.flush()
     except OSError as error:
         return failed_output(error)
@@ -71,13 +76,17 @@ def carry_out(app: typer.Typer, arguments: Sequence[str], name: str) -> int:
     Returns:
         The exit code that the command ends with.
     """
+    import typer
+
     from gcode.cli.console import fail
 
+    # Typer's error for a wrong use of the command line; it exports this one of its subclasses only.
+    usage_error: type[Exception] = typer.BadParameter.__mro__[1]
     set_names(arguments)
     try:
         code = app(args=list(arguments) or ["--help"], prog_name=name, standalone_mode=False)
         code = code if arguments else exit_codes.USAGE
-    except _UsageError as error:
+    except usage_error as error:
         context = getattr(error, "ctx", None)
         command = name if context is None else context.command_path
         message = str(error.format_message()).rstrip(".").replace(": Value error, ", ": ")  # type: ignore[attr-defined]

@@ -10,8 +10,6 @@ import sys
 from collections.abc import Iterator
 from typing import TextIO
 
-import typer
-
 from gcode.cli import exit_codes
 
 
@@ -70,6 +68,8 @@ def closed_pipe_ends() -> Iterator[None]:
     try:
         yield
     except BrokenPipeError as error:
+        import typer
+
         raise typer.Exit(failed_output(error)) from None
 
 

@@ -12,9 +12,12 @@ MACRO_CALLS = frozenset({65.0, 66.0, 66.1})
 
 def evaluated(session: Session, block: ParsedBlock) -> ParsedBlock:
     """The block with plain numbers for words; its assignments are made."""
-    call = any(word.letter == "G" and word.value in MACRO_CALLS for word in block.words)
-    words = block if block.plain else block.evaluated(session.variables.scope(), exact=call)
-    assign(session, block, block.assignments)
+    words = block
+    if not block.plain and block.words:
+        call = any(word.letter == "G" and word.value in MACRO_CALLS for word in block.words)
+        words = block.evaluated(session.variables.scope(), exact=call)
+    if block.assignments:
+        assign(session, block, block.assignments)
     return in_increments(session.state, words)
 
 

@@ -73,6 +73,7 @@ class Runner:
         self._bulk = bulk
         self._rules = plain_rules(dialect, settings)
         self._most_lines = MAX_LINES
+        self._single: set[tuple[int, int]] = set()  # lines after which too few plain ones follow
         self._parsed: dict[tuple[int, int], tuple[tuple[ParsedBlock, ...], int]] = {}
 
     def run(self) -> Iterator[Event | PlainBatch]:
@@ -140,7 +141,8 @@ class Runner:
         except GcodeError:
             level.spot = Spot(following, level.spot.line + 1)
             raise
-        if len(self._parsed) < _KEPT_LINES and (len(session.levels) > 1 or not block_is_plain(blocks)):
+        again = len(session.levels) > 1 or session.jumps > 0
+        if len(self._parsed) < _KEPT_LINES and (again or not block_is_plain(blocks)):
             self._parsed[key] = (blocks, following)
         return blocks, following
 
@@ -220,7 +222,8 @@ class Runner:
     def _plain(self) -> PlainBatch | None:
         """A run of plain blocks from here on, taken at once; None where there is none."""
         session, level, state = self.session, self.session.level, self.session.state
-        if level.queue or session.modal_macro is not None or not is_plain(state):
+        key = (id(level.program), level.spot.offset)
+        if key in self._single or level.queue or session.modal_macro is not None or not is_plain(state):
             return None
         start = _plain_start(state, level.spot.line)
         most = min(self._most_lines, session.settings.limits.blocks - session.blocks)
@@ -230,6 +233,8 @@ class Runner:
         elif run is not None:
             self._most_lines = min(MAX_LINES, 2 * self._most_lines)
         if run is None:
+            if not vain and len(self._single) < _KEPT_LINES and most >= _FEWEST_LINES:
+                self._single.add(key)
             return None
         session.count_blocks(start.line, run.lines)
         level.spot = Spot(run.offset, run.after.line)

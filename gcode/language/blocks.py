@@ -194,8 +194,17 @@ class ParsedBlock:
             value = self.value_of(word.expression, scope)
             if value is not None:
                 steps = 0 if exact else scope.steps(word.letter)
-                words.append(word._replace(value=rounded(value, steps) if steps else value, expression=None))
-        return replace(self, words=tuple(words), plain=True)
+                words.append(Word(word.letter, rounded(value, steps) if steps else value, word.text, word.column))
+        return ParsedBlock(
+            place=self.place,
+            words=tuple(words),
+            assignments=self.assignments,
+            statement=self.statement,
+            comments=self.comments,
+            deleted=self.deleted,
+            percent=self.percent,
+            name=self.name,
+        )
 
     def value_of(self, expression: Expression, scope: Scope) -> float | None:
         """Value of an expression of this block.

@@ -12,6 +12,8 @@ from gcode.dialects.macro_language import MacroLanguage, MathError, rounded
 
 #: Brackets inside each other; no control takes a tenth of it.
 MAX_DEPTH = 60
+#: Whole numbers of up to this many digits are exact as doubles.
+_EXACT_DIGITS = 15
 _NUMBER = re.compile(r"\d++(?:\.\d*+)?+|\.\d++", re.ASCII)
 _NAME = re.compile(r"[A-Z]+")
 _OPERATOR = re.compile(r"\*\*|[-+*/]|MOD?|AND?|XOR?|OR|EQ|NE|GT|GE|LT|LE")
@@ -67,11 +69,13 @@ class Expression:
         text: as written, in upper case and without blanks.
         column: where it begins, counted from 1.
         function: gives its value in a scope.
+        whole: the whole number that it is, None for another number and anything to compute.
     """
 
     text: str
     column: int
     function: Function
+    whole: int | None = None
 
     def evaluate(self, scope: Scope) -> float | None:
         """The value, None for vacant.
@@ -139,7 +143,9 @@ def parse_operand(source: Source, position: int, depth: int = 0) -> tuple[Expres
         EvaluationError: where there is none.
     """
     function, end = _signed(source, position, depth)
-    return Expression(source.text[position:end], source.column(position), function), end
+    text = source.text[position:end]
+    whole = int(text) if text.isdecimal() and text.isascii() and len(text) <= _EXACT_DIGITS else None
+    return Expression(text, source.column(position), function, whole), end
 
 
 def parse_sum(source: Source, position: int) -> tuple[Expression, int]:
@@ -210,6 +216,18 @@ def _reading(variable: Variable) -> Function:
     index = variable.index
     if index is None:
         raise ValueError("a variable needs an index or a name")
+    number, column = index.whole, variable.column
+    if number is not None:
+        fixed = number
+
+        def read_fixed(scope: Scope) -> float | None:
+            try:
+                return scope.number(fixed)
+            except EvaluationError as error:
+                error.column = error.column or column
+                raise
+
+        return read_fixed
 
     def read(scope: Scope) -> float | None:
         return _located(scope.number, variable_number(index, scope), variable.column)
@@ -231,6 +249,8 @@ def variable_number(index: Expression, scope: Scope) -> int:
     Raises:
         EvaluationError: where it is none.
     """
+    if index.whole is not None:
+        return index.whole
     value = index.evaluate(scope)
     if value is None or abs(value - round(value)) > 1e-4 or value < 0.0:
         shown = "vacant" if value is None else f"{value:g}"

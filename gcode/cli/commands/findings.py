@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gcode.cli.machine_options import Setup
+from gcode.cli.setup import Setup
 from gcode.errors import GcodeError, Place
 from gcode.events import WARNINGS, Notice
 from gcode.flow.interpreter import examine

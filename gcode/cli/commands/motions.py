@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from gcode.cli.machine_options import ProgramFile, Setup, with_machine
+from gcode.cli.machine_options import ProgramFile, with_machine
+from gcode.cli.setup import Setup
 
 
 @with_machine
@@ -12,11 +13,6 @@ def motions(file: ProgramFile, *, setup: Setup) -> None:
     Positions are those of the controlled point in machine coordinates, mm: the tool tip while the tool length offset is
     active, else the gauge point. If the program has an error, the motions before it are printed.
     """
-    import sys
+    from gcode.cli.tasks import print_motions
 
-    from gcode.flow.interpreter import run
-    from gcode.report.batch_lines import motion_lines
-
-    events = run(file, dialect=setup.dialect, settings=setup.settings)
-    for text in motion_lines(events, setup.settings.start_mm):
-        sys.stdout.write(text)
+    print_motions(file, setup)

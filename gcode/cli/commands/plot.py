@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from gcode.cli.machine_options import ProgramFile, Setup, with_machine
+from gcode.cli.machine_options import ProgramFile, with_machine
+from gcode.cli.setup import Setup
 
 
 class View(StrEnum):

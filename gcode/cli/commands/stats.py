@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from gcode.cli.machine_options import ProgramFile, Setup, with_machine
+from gcode.cli.machine_options import ProgramFile, with_machine
+from gcode.cli.setup import Setup
 
 #: Rates of rapids, mm/min.
 _SLOWEST, _FASTEST = 0.001, 1e9
@@ -33,19 +34,6 @@ def stats(
 
     Times include feed motions, dwells, and rapids at the given rate; acceleration and tool changes are ignored.
     """
-    from gcode.cli.console import results, say_json, with_progress
-    from gcode.flow.interpreter import run
-    from gcode.report.stats import program_stats
+    from gcode.cli.tasks import print_stats
 
-    events = run(file, dialect=setup.dialect, settings=setup.settings)
-    found = program_stats(with_progress(events, file.name), rapid_mm_min)
-    if as_json:
-        import json
-
-        from gcode.report.stats_json import stats_object
-
-        say_json(json.dumps({"file": str(file), **stats_object(found)}, indent=2))
-    else:
-        from gcode.cli.commands.stats_tables import print_stats
-
-        print_stats(results(), file.name, found)
+    print_stats(file, setup, rapid_mm_min, as_json=as_json)
