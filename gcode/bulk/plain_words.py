@@ -47,6 +47,8 @@ _COUNTS[ord("\n")] = 1 << 2 * _FIELD
 _CAPITAL = np.uint8(0xDF)
 #: Longest text that the packed counts hold.
 MAX_BYTES = _MASK
+#: Text that is searched for a number of lines, and at least: more than the longest line has.
+_BYTES_PER_LINE, _LEAST_BYTES = 64, 8192
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,8 +71,8 @@ class WordArrays:
 def plain_end(buffer: bytes, offset: int, max_lines: int, *, semicolon_ends_block: bool = True) -> int:
     """Finds the end of the plain lines that begin at `offset`: after the line end of the last of at most `max_lines`.
 
-    A last line without a line end is not one of them. So that few expressions are ever made, the number is the power
-    of two in `max_lines`: where there are more lines, a further call finds the rest.
+    A last line without a line end is not one of them. Where lines are long there may be fewer than there could be: a
+    further call finds the rest.
 
     Args:
         buffer: the program's text.
@@ -80,14 +82,18 @@ def plain_end(buffer: bytes, offset: int, max_lines: int, *, semicolon_ends_bloc
     """
     if max_lines < 1:
         return offset
-    lines = _lines(1 << max_lines.bit_length() - 1, semicolon_ends_block)
-    match = lines.match(buffer, offset, min(len(buffer), offset + MAX_BYTES))
-    return offset if match is None else buffer.rfind(b"\n", offset, match.end()) + 1
+    most_bytes = min(MAX_BYTES, max(_LEAST_BYTES, _BYTES_PER_LINE * max_lines))
+    match = _lines(semicolon_ends_block).match(buffer, offset, min(len(buffer), offset + most_bytes))
+    end = offset if match is None else buffer.rfind(b"\n", offset, match.end()) + 1
+    if buffer.count(b"\n", offset, end) > max_lines:
+        text = np.frombuffer(buffer, np.uint8, end - offset, offset)
+        end = offset + int(np.flatnonzero(text == ord("\n"))[max_lines - 1]) + 1
+    return end
 
 
-@lru_cache(maxsize=32)
-def _lines(most: int, semicolon_ends_block: bool) -> re.Pattern[bytes]:
-    return re.compile(rb"(?:" + _LINE + _LINE_ENDS[semicolon_ends_block] + rb"){1,%d}+" % most)
+@lru_cache(maxsize=2)
+def _lines(semicolon_ends_block: bool) -> re.Pattern[bytes]:
+    return re.compile(rb"(?:" + _LINE + _LINE_ENDS[semicolon_ends_block] + rb")++")
 
 
 def read_words(buffer: bytes, offset: int, end: int) -> WordArrays:

@@ -132,6 +132,11 @@ class Runner:
         session.place = blocks[0].place
         return blocks[0]
 
+    @property
+    def _repeats(self) -> bool:
+        """True where lines may be met more than once: in a call, and after a jump back."""
+        return len(self.session.levels) > 1 or self.session.jumps > 0
+
     def _parse_line(self, level: Level, offset: int, key: tuple[int, int]) -> tuple[tuple[ParsedBlock, ...], int]:
         session = self.session
         text, following = level.program.line_at(offset)
@@ -141,8 +146,7 @@ class Runner:
         except GcodeError:
             level.spot = Spot(following, level.spot.line + 1)
             raise
-        again = len(session.levels) > 1 or session.jumps > 0
-        if len(self._parsed) < _KEPT_LINES and (again or not block_is_plain(blocks)):
+        if len(self._parsed) < _KEPT_LINES and (self._repeats or not block_is_plain(blocks)):
             self._parsed[key] = (blocks, following)
         return blocks, following
 
@@ -233,7 +237,7 @@ class Runner:
         elif run is not None:
             self._most_lines = min(MAX_LINES, 2 * self._most_lines)
         if run is None:
-            if not vain and len(self._single) < _KEPT_LINES and most >= _FEWEST_LINES:
+            if self._repeats and not vain and len(self._single) < _KEPT_LINES and most >= _FEWEST_LINES:
                 self._single.add(key)
             return None
         session.count_blocks(start.line, run.lines)

@@ -98,6 +98,10 @@ class _Segment:
 def _segments(place: Place, dialect: Dialect) -> list[_Segment]:
     """Splits a line at its semicolons, where they end blocks, and takes comments and blanks out."""
     text, position = place.text, 0
+    if text.isascii() and "(" not in text and ";" not in text:
+        characters = text.replace(" ", "").replace("\t", "").upper()
+        columns = [column for column, character in enumerate(text, 1) if character not in " \t"]
+        return [_Segment(list(characters), columns)]
     segments = [_Segment()]
     while position < len(text):
         character, current = text[position], segments[-1]

@@ -216,18 +216,6 @@ def _reading(variable: Variable) -> Function:
     index = variable.index
     if index is None:
         raise ValueError("a variable needs an index or a name")
-    number, column = index.whole, variable.column
-    if number is not None:
-        fixed = number
-
-        def read_fixed(scope: Scope) -> float | None:
-            try:
-                return scope.number(fixed)
-            except EvaluationError as error:
-                error.column = error.column or column
-                raise
-
-        return read_fixed
 
     def read(scope: Scope) -> float | None:
         return _located(scope.number, variable_number(index, scope), variable.column)
