@@ -86,6 +86,7 @@ def test_zeros_and_spans_are_finite(text: str) -> None:
     ("values", "message"),
     [
         ({"overhang_mm": 1e8}, "points of rows; expected at most 1e\\+08"),
+        ({"tolerance_mm": 1e8}, r"tolerance_mm = 1e\+08: expected at most 2, the radius"),
         ({"layers": 10**8}, "points of rows; expected at most 1e\\+08"),
         ({"strategy": "contour", "axial_depth_mm": 1e-7}, "make 2e\\+07 levels of 1 layers; expected at most 10000"),
         ({"strategy": "contour", "layers": 10**6}, "levels of 1000000 layers; expected at most 10000"),

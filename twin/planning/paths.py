@@ -186,7 +186,7 @@ def _check_tool(settings: PathSettings, tool: ToolShape) -> None:
 
     Raises:
         ToolPathError: one of these: a stepover above the diameter, a radial depth above the radius where an area is
-            cleared.
+            cleared, a tolerance above the radius.
     """
     if settings.strategy == "scan" and tool.taper_rad > 0.0 and not settings.exact:
         raise ToolPathError(
@@ -194,6 +194,10 @@ def _check_tool(settings: PathSettings, tool: ToolShape) -> None:
             "these, or exact = true (--exact)"
         )
     diameter, radial = 2.0 * tool.nominal_radius_mm, settings.radial_depth_mm or 0.0
+    if settings.tolerance_mm > 0.5 * diameter:
+        raise ToolPathError(
+            f"tolerance_mm = {settings.tolerance_mm:g}: expected at most {0.5 * diameter:g}, the radius"
+        )
     if settings.strategy == "scan" and settings.stepover_mm > diameter:
         raise ToolPathError(f"stepover_mm = {settings.stepover_mm:g}: expected at most {diameter:g}, the diameter")
     most = 0.5 * diameter if settings.layers == 0 else diameter
