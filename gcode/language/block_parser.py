@@ -262,7 +262,7 @@ def _worked_out(place: Place, source: Source, start: int, letter: str, position:
     column = source.column(start)
     signed = digits in ("", "+", "-")
     if signed and source.language.name != "none" and (following in ("#", "[") or _function_follows(source, position)):
-        expression, end = parse_operand(replace(source, letter=letter), position)
+        expression, end = parse_operand(Source(source.text, source.columns, source.language, letter), position)
         if source.text[end : end + 1] in _OPERATORS:
             raise _without_brackets(place, source, position, letter)
         return Word(letter, 0.0, letter + expression.text, column, expression), end
