@@ -31,8 +31,8 @@ _SLICE_S, _FORCED_SLICE_S, _SAMPLE_S = 0.2e-3, 0.35e-3, 2.5e-6
 _PIECE_MM = 1.0
 #: Bytes of a force sample, of a step, and of a byte of the meshes of the part: in the archive, and in a recording. In
 #: the archive a sample takes 1 byte where each revolution is like the one before, and 8 where no two are alike.
-_ARCHIVE_B = (1.5, 120.0, 0.12)
-_RECORDING_B = (21.0, 400.0, 0.8)
+_ARCHIVE_B = (1.2, 120.0, 0.12)
+_RECORDING_B = (24.0, 400.0, 0.55)
 #: Bytes of the meshes for each second of feed motion in the stock: straight and level with a flat tool, which leaves
 #: large planes, and otherwise; and for each cell of the surface at the end.
 _PLANE_B_S, _DRAWN_B_S, _CELL_B = 0.05e6, 0.6e6, 45.0
@@ -41,7 +41,7 @@ MOST_BYTES, MOST_SAMPLES = 120e6, 8_000_000
 #: Cells along the longest side of the stock as drawn.
 _CELLS = 200.0
 #: Bytes of an archive and of a recording besides.
-_ARCHIVE_MORE_B, _RECORDING_MORE_B = 0.2e6, 1.5e6
+_ARCHIVE_MORE_B, _RECORDING_MORE_B = 0.03e6, 1.2e6
 #: Memory of the program itself (a recording takes 130 MB more), and of a column of the slices that is cut, bytes.
 _PROGRAM_B, _COLUMN_B = 280e6, 180.0
 

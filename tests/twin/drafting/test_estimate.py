@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from twin.drafting import estimate
 from twin.drafting.draft import draft_job
 from twin.simulation import preview
@@ -28,5 +26,5 @@ def test_files_have_the_size_that_was_estimated(tmp_path: Path) -> None:
     with Replay(draft.job()) as replay, opened(mcap, rrd, view=False, force=False) as write:
         for record in replay:
             write(record)
-    assert draft.estimate.archive_bytes == pytest.approx(mcap.stat().st_size, rel=0.4)
-    assert draft.estimate.recording_bytes == pytest.approx(rrd.stat().st_size, rel=0.4)
+    assert 1.0 / 1.5 < draft.estimate.archive_bytes / mcap.stat().st_size < 1.5
+    assert 1.0 / 1.5 < draft.estimate.recording_bytes / rrd.stat().st_size < 1.5
