@@ -46,9 +46,14 @@ def chains(move: Move) -> bool:
     return move.arc is not None and move.arc.plane == 17
 
 
+def cut_in_chains(move: Move, tool: ToolSetup) -> bool:
+    """Whether the chords of a motion are cut in chains in a replay: where no forces are computed."""
+    return tool.forces is None and chains(move)
+
+
 def chord_groups(move: Move, pieces: Iterator[Piece], tool: ToolSetup, setup: Setup) -> Iterator[list[Piece]]:
     """The chords of an arc in groups for `chord_steps`; each must be cut before the next is taken."""
-    if tool.forces is None:
+    if cut_in_chains(move, tool):
         yield from chain_groups(pieces, tool, setup.material)
         return
     held = list(islice(pieces, STEPS_TOGETHER))
@@ -96,13 +101,18 @@ def chord_steps(move: Move, chords: Sequence[Piece], tool: ToolSetup, setup: Set
     for _, _, duration_s in chords:
         turned.append(recorder.turned(t_s, duration_s, move))
         t_s += duration_s
-    if tool.forces is None:
+    if cut_in_chains(move, tool):
         solved = chords_where_it_changes(move, chords, tool, setup)
     else:
         ends = np.array([chords[0][0], *(end for _, end, _ in chords)])
         at = _middles(move, chords, tool, np.arange(len(chords)) + setup.material.waiting)
-        angles, rpm = [angle for _, angle in turned], np.full(len(chords), move.spindle_rpm)
-        solved = setup.solver.solve(tool, at, angles, rpm, setup.material.pending_chords(tool, ends))()
+        pending = setup.material.pending_chords(tool, ends)
+        if tool.forces is None:
+            longest = float(_along(chords)[1].max())
+            solved = solved_where_it_changes(at, longest, move.spindle_rpm, tool, setup, pending)
+        else:
+            angles, rpm = [angle for _, angle in turned], np.full(len(chords), move.spindle_rpm)
+            solved = setup.solver.solve(tool, at, angles, rpm, pending)()
     for (start, end, duration_s), samples, own in zip(chords, turned, solved, strict=True):
         yield recorder.step(move, start, end, duration_s, samples, own)
 

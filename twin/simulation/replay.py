@@ -20,7 +20,7 @@ from gcode.events import Event
 from twin.job import Job
 from twin.motion.path import Move
 from twin.record import Record, RunSummary
-from twin.simulation.chords import chains, chord_groups, chord_steps, chords_are_steps
+from twin.simulation.chords import chord_groups, chord_steps, chords_are_steps, cut_in_chains
 from twin.simulation.clock import Turned
 from twin.simulation.contacts import Contacts, box_of, forbidden
 from twin.simulation.level_runs import LevelRun, cut_level_run, level_runs
@@ -130,8 +130,7 @@ def cut(move: Move, setup: Setup) -> Iterator[Record]:
     setup.starts.check(tool, move, material)
     contacts = Contacts()
     pieces = _straight(move, setup.step_mm, setup.tolerance.chord_mm)
-    together = move.arc is not None and (tool.forces is not None or chains(move))
-    if together and forbidden(move) is None and chords_are_steps(move, setup):
+    if move.arc is not None and forbidden(move) is None and chords_are_steps(move, setup):
         yield from _cut_chords(move, pieces, tool, setup, contacts)
     else:
         yield from _cut_pieces(move, pieces, tool, setup, contacts)
@@ -160,7 +159,7 @@ def _cut_chords(
         rigid_near = material.rigid_near(tool, np.array([chords[0][0], *(end for _, end, _ in chords)]))
         for (start, end, _), step in zip(chords, steps, strict=True):
             yield step
-            if tool.forces is None:
+            if cut_in_chains(move, tool):
                 material.add_chord(tool, start, end)
             else:
                 contacts.add(material.cut(tool, start, end, None), step.t_s, start)
