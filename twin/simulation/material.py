@@ -33,7 +33,7 @@ _BEHIND_CHORDS = 1.1
 
 
 #: Chords that retrace earlier ones wait longer, for later ones to swallow them: this many at most, and until they are
-#: deeper than the slices are cut by this many pitches.
+#: deeper than the slices are cut by this many pitches; turns deeper than half of that do not wait.
 RETRACED_TOGETHER, RETRACED_PITCHES = 512, 1.0
 #: Chords are the same in plan when they agree to this many decimals, mm.
 _DECIMALS = 9
@@ -220,9 +220,13 @@ class Material:
         """
         if len(self._waiting) < CHORDS_TOGETHER:
             return
-        cut_mm = self._cut_to_mm.get(_plan(start_mm, end_mm, tool.number), math.inf)
+        plan, z_mm = _plan(start_mm, end_mm, tool.number), float(end_mm[2])
+        cut_mm = self._cut_to_mm.get(plan, math.inf)
+        before = self._waiting.get(self._of_plan.get(plan, -1))
+        before_mm = cut_mm if before is None else float(before.sweep.end_mm[2])
         deep_mm = RETRACED_PITCHES * float(self.workpiece.pitch_mm[2])
-        if len(self._waiting) > RETRACED_TOGETHER or cut_mm - float(end_mm[2]) > deep_mm:
+        soon = cut_mm - z_mm <= deep_mm and before_mm - z_mm <= 0.5 * deep_mm
+        if len(self._waiting) > RETRACED_TOGETHER or not soon:
             self._subtract(len(self._waiting), Sweep(tool.cutter, start_mm, end_mm))
 
     def _wait(self, sweep: _Waiting) -> int:
