@@ -30,12 +30,14 @@ _SLICE_S, _FORCED_SLICE_S, _SAMPLE_S = 0.2e-3, 0.35e-3, 2.5e-6
 #: Length of the straight pieces that an arc counts as, mm.
 _PIECE_MM = 1.0
 #: Bytes of a force sample, of a step, and of a byte of the meshes of the part: in the archive, and in a recording. In
-#: the archive a sample takes 1 byte where each revolution is like the one before, and 8 where no two are alike.
-_ARCHIVE_B = (1.2, 120.0, 0.12)
+#: the archive a sample takes little where each revolution is like the one before, and 8 bytes where no two are alike.
+_ARCHIVE_B, _UNLIKE_B = (1.2, 120.0, 0.12), 8.0
 _RECORDING_B = (24.0, 400.0, 0.55)
 #: Bytes of the meshes for each second of feed motion in the stock: straight and level with a flat tool, which leaves
 #: large planes, and otherwise; and for each cell of the surface at the end.
 _PLANE_B_S, _DRAWN_B_S, _CELL_B = 0.05e6, 0.6e6, 45.0
+#: Arcs, tilted motions, and those that are shorter than this, mm, change the engagement of tools that are not flat.
+_SHORT_MM = 2.0
 #: Most bytes of the meshes, and most samples in a recording (`twin.simulation.preview`, `twin.sinks.rerun.envelope`).
 MOST_BYTES, MOST_SAMPLES = 120e6, 8_000_000
 #: Cells along the longest side of the stock as drawn.
@@ -92,7 +94,8 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
     inside = cuts.feed.only(cuts.feed.low_mm[:, 2] < stock.high_mm[2])
     rise = np.maximum(inside.high_mm[:, 2] - inside.low_mm[:, 2], 1e-9)
     share = np.minimum((stock.high_mm[2] - inside.low_mm[:, 2]) / rise, 1.0)
-    turns = float((inside.time_s * inside.spindle_rpm * share).sum() / 60.0)
+    own_turns = inside.time_s * inside.spindle_rpm * share / 60.0
+    turns = float(own_turns.sum())
     samples = round(turns * 360.0 / fine.angle_deg) if forces else 0
     steps = round(float((inside.length_mm * share).sum()) / fine.pitch_mm) + len(inside.tool)
     x, y, z = stock.size_mm.tolist()
@@ -108,6 +111,8 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
     planes = inside.level & ~inside.arc & np.isin(inside.tool, flat)
     drawn = float((inside.time_s * share * np.where(planes, _PLANE_B_S, _DRAWN_B_S)).sum())
     drawn = min(drawn, MOST_BYTES) + cells * _CELL_B
+    changing = ~np.isin(inside.tool, flat) & (~inside.level | inside.arc | (inside.length_mm < _SHORT_MM))
+    unlike = samples * float(own_turns[changing].sum()) / max(turns, 1e-9)
 
     def size(parts: tuple[float, float, float], most_samples: float = math.inf) -> float:
         sample, step, mesh = parts
@@ -119,7 +124,7 @@ def estimate(cuts: Cuts, stock: StockBox, fine: Fineness, tools: Sequence[DraftT
         samples=samples,
         computing_s=_SETUP_S + cut_slices * (_FORCED_SLICE_S if forces else _SLICE_S) + samples * _SAMPLE_S,
         memory_bytes=_PROGRAM_B + min(surface, 2.0 * swept) / fine.pitch_mm**2 * _COLUMN_B,
-        archive_bytes=size(_ARCHIVE_B) + _ARCHIVE_MORE_B,
+        archive_bytes=size(_ARCHIVE_B) + unlike * (_UNLIKE_B - _ARCHIVE_B[0]) + _ARCHIVE_MORE_B,
         recording_bytes=size(_RECORDING_B, MOST_SAMPLES) + _RECORDING_MORE_B,
     )
 
