@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
@@ -113,7 +114,23 @@ class Chain:
         return strips_by(lambda strips: chain_nodes(self.body.shape, chords, cut, strips), first, planes)
 
 
-def follows(sweep: Sweep | Chain, earlier: Sweep | Chain | None) -> bool:
+class Moving(Protocol):
+    """What a body has swept, from a first to a last tool tip."""
+
+    @property
+    def body(self) -> Body:
+        """The body."""
+
+    @property
+    def start_mm(self) -> FloatArray:
+        """Tool tip at the start, shape (3,)."""
+
+    @property
+    def end_mm(self) -> FloatArray:
+        """Tool tip at the end, shape (3,)."""
+
+
+def follows(sweep: Moving, earlier: Moving | None) -> bool:
     """Whether a sweep begins where an earlier one of the same body ended."""
     return (
         earlier is not None

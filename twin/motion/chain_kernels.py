@@ -14,6 +14,7 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import Strips
 from twin.jit import helper, njit
+from twin.motion.disc_kernels import MOST_DISCS, disc_parts, radius_at, reached_by_all
 from twin.motion.node_kernels import (
     INSET,
     MAX_DEPTH,
@@ -40,8 +41,6 @@ _OUTSET = 1.0 + 1e-9
 _PER_SQUARE, _BULGE = 6, 7
 #: Intervals halved less often than this are judged by a second point.
 _LOOK_TWICE = 3
-#: Most discs by which the section of a chord is described.
-_DISCS = 16
 #: Chords in a block.
 _BLOCK = 8
 
@@ -98,7 +97,7 @@ def chain_nodes(body: BodyShape, chords: FloatArray, planes: ChainPlanes, strips
     Returns:
         Number of nodes written, or -1 when they do not fit.
     """
-    stack, parts = np.empty((MAX_DEPTH + 2, NODE_FIELDS)), np.empty((2 * len(chords) + 4 * _DISCS, 8))
+    stack, parts = np.empty((MAX_DEPTH + 2, NODE_FIELDS)), np.empty((2 * len(chords) + 4 * MOST_DISCS, 8))
     offsets, nodes, fresh = strips.offsets, strips.nodes, strips.fresh
     unchanged = _unchanged_above(body, chords, planes)
     written, offsets[0] = 0, 0
@@ -107,7 +106,7 @@ def chain_nodes(body: BodyShape, chords: FloatArray, planes: ChainPlanes, strips
         if planes.horizontal and w >= unchanged:
             if planes.band < math.inf:
                 pass
-            elif i > 0 and w - planes.pitch >= unchanged and w <= _reached_by_all(body, chords):
+            elif i > 0 and w - planes.pitch >= unchanged and w <= reached_by_all(body, chords):
                 written = repeat_nodes(nodes, fresh, offsets[i - 1], written)
             else:
                 written = _plane_nodes(body, chords, planes, w, parts, stack, strips, written)
@@ -129,13 +128,6 @@ def _unchanged_above(body: BodyShape, chords: FloatArray, planes: ChainPlanes) -
     return float(
         tip + max(0.0, body.meridian.arc_height - body.drop) + (planes.band if planes.band < math.inf else 0.0)
     )
-
-
-@helper
-def _reached_by_all(body: BodyShape, chords: FloatArray) -> float:
-    """Height up to which the body reaches all along the chain."""
-    end = len(chords) - 1
-    return float(min(chords[0, 0], chords[end, 0] + chords[end, 1]) + body.meridian.height - body.drop)
 
 
 @helper
@@ -185,7 +177,7 @@ def _plane_nodes(
 def _section(body: BodyShape, chords: FloatArray, planes: ChainPlanes, w: float, room: FloatArray) -> _Section:
     """The section by a plane, its parts and blocks in ``room``."""
     if planes.horizontal:
-        count = _disc_parts(body, chords, w, planes.chord, room)
+        count = disc_parts(body, chords, w, planes.chord, room)
         low, high = _range_of_discs(room, count)
         blocks = 0
     else:
@@ -254,57 +246,6 @@ def _range_of_chords(body: BodyShape, parts: FloatArray, count: int, w: float) -
         low = min(low, -disc_upper(m.w, m.dw, -m.u, -m.du, radius, w, 0.0, 1.0))
         high = max(high, disc_upper(m.w, m.dw, m.u, m.du, radius, w, 0.0, 1.0))
     return low, high
-
-
-@helper
-def _disc_parts(body: BodyShape, chords: FloatArray, z: float, chord: float, parts: FloatArray) -> int:
-    """Sections of the chords at a height, as discs at two ends of each or of pieces of it; returns their number.
-
-    Between the two discs the radius is taken to grow evenly, so chords at which it does not are divided.
-    """
-    tool, n = body.meridian, 0
-    for i in range(len(chords)):
-        tip, dz = chords[i, 0], chords[i, 1]
-        first, last = _times_between(tip, dz, z - tool.height + body.drop, z)
-        if first > last:
-            continue
-        shallow, deep = (first, last) if dz <= 0.0 else (last, first)
-        pieces, most = 1, min(_DISCS, (len(parts) - n) // (2 * (len(chords) - i)))
-        while 2 * pieces <= most and not _grows_evenly(body, z - tip, dz, shallow, deep, pieces, chord):
-            pieces *= 2
-        for j in range(pieces):
-            for e in range(2):
-                t = shallow + (deep - shallow) * ((j + e) / pieces) ** 2
-                parts[n, 3 * e] = chords[i, 2] + t * chords[i, 3]
-                parts[n, 3 * e + 1] = chords[i, 4] + t * chords[i, 5]
-                parts[n, 3 * e + 2] = _radius_at(body, z - tip - t * dz)
-            n += 1
-    return n
-
-
-@helper
-def _radius_at(body: BodyShape, above_tip: float) -> float:
-    """Radius of the body's section at a height above the tool tip."""
-    return profile_radius(body.meridian, min(max(0.0, above_tip + body.drop), body.meridian.height))
-
-
-@helper
-def _grows_evenly(
-    body: BodyShape, height: float, dz: float, shallow: float, deep: float, pieces: int, chord: float
-) -> bool:
-    """Whether the radius in the middle of the first piece of a chord is about the mean of those at its ends."""
-    end = shallow + (deep - shallow) / (pieces * pieces)
-    mean = 0.5 * (_radius_at(body, height - shallow * dz) + _radius_at(body, height - end * dz))
-    return abs(_radius_at(body, height - 0.5 * (shallow + end) * dz) - mean) <= chord
-
-
-@helper
-def _times_between(tip: float, dz: float, low: float, high: float) -> tuple[float, float]:
-    """Interval of t in [0, 1] with low <= tip + t dz <= high; empty when first > last."""
-    if dz == 0.0:
-        return (0.0, 1.0) if low <= tip <= high else (1.0, 0.0)
-    a, b = (low - tip) / dz, (high - tip) / dz
-    return max(0.0, min(a, b)), min(1.0, max(a, b))
 
 
 @helper

@@ -20,7 +20,7 @@ from twin.tools.shape import ToolShape
 _ORDER = ((0, 1, 2), (1, 0, 2), (2, 0, 1))
 #: No tool on whose surface points lie.
 ANYWHERE = Fronts(Meridian(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), np.zeros((0, 3)), np.zeros(0, dtype=np.int32))
-EMPTY_STRIPS = Strips(0, np.zeros(1, dtype=np.int64), np.zeros((0, 3)), np.zeros(0, dtype=np.bool_))
+EMPTY_STRIPS = Strips(np.zeros(0, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros((0, 3)), np.zeros(0, dtype=np.bool_))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,13 +151,13 @@ def planes_between(
 
 def strips_by(fill: Callable[[Strips], int], first: int, planes: int) -> Strips:
     """Strips whose arrays a function fills; it returns the number of nodes, or -1 where they do not fit."""
-    offsets = np.zeros(planes + 1, dtype=np.int64)
+    at, offsets = np.arange(first, first + planes), np.zeros(planes + 1, dtype=np.int64)
     room = 128 * planes + 2048
     while True:
-        strips = Strips(first, offsets, np.empty((room, 3)), np.empty(room, dtype=np.bool_))
+        strips = Strips(at, offsets, np.empty((room, 3)), np.empty(room, dtype=np.bool_))
         written = fill(strips)
         if written >= 0:
-            return Strips(first, offsets, strips.nodes[:written], strips.fresh[:written])
+            return Strips(at, offsets, strips.nodes[:written], strips.fresh[:written])
         room *= 2
 
 

@@ -12,17 +12,17 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.motion.chain import Chain, chained
 from twin.motion.sweep import Body, Sweep, SweptVolume
+from twin.motion.union import SweepUnion
 from twin.record import CollisionKind
 from twin.simulation.tools import ToolSetup
 from twin.tolerance import Tolerance
 from twin.workpiece.removal import Removal
 from twin.workpiece.trislice import TriSlices
 
-#: Sweeps wait until the tool has gone on by this many slice pitches, or until this many are waiting.
+#: Sweeps wait until the tool has gone on by this many slice pitches.
 PENDING_PITCHES = 10.0
-PENDING_SWEEPS = 48
-#: At least this many sweeps are subtracted together, so that threads have enough to do.
-TOGETHER = 8
+#: Those are subtracted together that make up this many diameters of the tool, or are this many.
+TOGETHER_DIAMETERS, TOGETHER = 1.0, 96
 #: Chords are subtracted together when at least this many wait.
 CHORDS_TOGETHER = 32
 #: A sweep this near to a motion's line lies on it, mm.
@@ -93,6 +93,7 @@ class Material:
         self._behind_mm = _BEHIND_CHORDS * tolerance.chord_mm
         self.removed_mm3: dict[int, float] = {}
         self._last_tool = 0
+        self._together_mm = 0.0
         self._cut_to_mm: dict[_Plan, float] = {}
 
     def pending(self, tool: int, start_mm: FloatArray, feed: FloatArray) -> SweptVolume:
@@ -178,6 +179,7 @@ class Material:
         """
         if forbidden is None:
             self._wait(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number))
+            self._together_mm = TOGETHER_DIAMETERS * 2.0 * tool.cutter.radius_mm
             self._subtract(self._due([w.sweep.length_mm for w in self._waiting.values()]))
             return
         self.flush()
@@ -247,12 +249,13 @@ class Material:
         Args:
             lengths_mm: of the sweeps that wait.
         """
-        count, done = len(lengths_mm), 0
+        done, older = 0, 0.0
         newer = sum(lengths_mm) - lengths_mm[0]
-        while count - done > 1 and (newer >= self._window_mm or count - done > PENDING_SWEEPS):
+        while len(lengths_mm) - done > 1 and newer >= self._window_mm:
+            older += lengths_mm[done]
             done += 1
             newer -= lengths_mm[done]
-        return done if done >= min(TOGETHER, count - 1) else 0
+        return done if older >= self._together_mm or done >= TOGETHER else 0
 
     def flush(self) -> None:
         """Subtract everything that waits."""
@@ -275,11 +278,11 @@ class Material:
         taken = [self._waiting.pop(number) for number in list(self._waiting)[:count]]
         if not taken:
             return 0.0
-        sweeps: list[Sweep | Chain] = []
+        sweeps: list[Sweep | Chain | SweepUnion] = []
         tools: list[int] = []
         for (tool, chord), together in groupby(taken, key=lambda w: (w.tool, w.plan is not None)):
             single = [w.sweep for w in together]
-            sweeps.extend(chained(single) if chord else single)
+            sweeps.extend(chained(single) if chord else self._removal.united(single))
             tools.extend([tool] * (len(sweeps) - len(tools)))
         if len(self._cut_to_mm) > _MOST_PLANS:
             self._cut_to_mm.clear()

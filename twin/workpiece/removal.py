@@ -17,6 +17,7 @@ from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import NO_TOPS, Tops
 from twin.motion.chain import Chain, follows
 from twin.motion.sweep import Sweep
+from twin.motion.union import SweepUnion
 from twin.workpiece.retraced import Retraced
 from twin.workpiece.trislice import TriSlices
 
@@ -24,6 +25,8 @@ from twin.workpiece.trislice import TriSlices
 _ORDER = (0, 1, 2)
 #: Sweeps no longer than this many pitches are cut only where there is material in their way.
 _SHORT_PITCHES = 3.0
+#: At least this many sweeps are cut as a union.
+_UNITED = 3
 #: After this many chains that left the volume at their end to the next sweep, one is cut whole.
 _CHAINS_LEFT = 3
 
@@ -31,7 +34,7 @@ _CHAINS_LEFT = 3
 class _Cut(NamedTuple):
     """A sweep to be subtracted, and the parts of it that need not be; see `Sweep.strips` and `Chain.strips`."""
 
-    sweep: Sweep | Chain
+    sweep: Sweep | Chain | SweepUnion
     start_is_cut: bool
     end_is_left: bool
     band_mm: float
@@ -47,7 +50,7 @@ class Removal:
     def __init__(self, workpiece: TriSlices, chord_mm: float, threads: int = 2) -> None:
         self.workpiece = workpiece
         self._chord_mm = chord_mm
-        self._last: tuple[TriSlices, Sweep | Chain] | None = None
+        self._last: tuple[TriSlices, Sweep | Chain | SweepUnion] | None = None
         self._left = 0
         self._retraced = Retraced()
         self._pool = ThreadPoolExecutor(max_workers=threads) if threads > 1 else None
@@ -60,7 +63,7 @@ class Removal:
         """
         return float(self.cut_all([sweep], apply=apply)[0])
 
-    def cut_all(self, sweeps: Sequence[Sweep | Chain], *, apply: bool = True, after: Sweep | None = None) -> FloatArray:
+    def cut_all(self, sweeps: Sequence[Sweep | Chain | SweepUnion], *, apply: bool = True, after: Sweep | None = None) -> FloatArray:
         """Take the volumes of several sweeps out, one after the other.
 
         Args:
@@ -89,7 +92,7 @@ class Removal:
         last = self._last[1]
         return Sweep(last.body, last.end_mm, last.end_mm)
 
-    def _cuts(self, sweeps: Sequence[Sweep | Chain], after: Sweep | None) -> list[_Cut]:
+    def _cuts(self, sweeps: Sequence[Sweep | Chain | SweepUnion], after: Sweep | None) -> list[_Cut]:
         """Several sweeps, each with the parts of it that need not be cut.
 
         The body between two chains that go down is left to the second, which goes deeper there; of two sweeps that
@@ -110,15 +113,17 @@ class Removal:
             before = sweep
         return cuts
 
-    def _touched(self, sweep: Sweep | Chain) -> bool:
+    def _touched(self, sweep: Sweep | Chain | SweepUnion) -> bool:
         low, high = sweep.bounds_mm
         return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
 
     def _cut_family(self, axis: int, cut: _Cut, levels: int, apply: bool) -> float:
         piece, sweep = self.workpiece, cut.sweep
+        if isinstance(sweep, SweepUnion):
+            return self._cut_union(axis, sweep, levels, start_is_cut=cut.start_is_cut)
         low, pitch = float(piece.low_mm[axis]), float(piece.pitch_mm[axis])
         count = levels if axis == 2 else piece.count(axis)
-        top = float(piece.low_mm[2] + (levels + 0.5) * piece.pitch_mm[2])  # where the next plane is, which is empty
+        top = self._top_mm(levels)
         if isinstance(sweep, Chain):
             settled = self._settled(axis, sweep, count) if cut.band_mm >= 0.0 else 0
             alone = self._cut_alone(sweep, cut, settled, top, apply) if settled else 0.0
@@ -141,6 +146,36 @@ class Removal:
             axis, low, pitch, count, self._chord_mm, start_is_cut=cut.start_is_cut, top_mm=top, tops=tops
         )
         return float(np.sum(piece.cut(axis, strips, apply=apply)) * pitch)
+
+    def _cut_union(self, axis: int, union: SweepUnion, levels: int, *, start_is_cut: bool) -> float:
+        """Cut a family's planes where a union meets material; returns the volume."""
+        piece = self.workpiece
+        low, pitch = float(piece.low_mm[axis]), float(piece.pitch_mm[axis])
+        met = union.planes_met(axis, low, pitch, levels if axis == 2 else piece.count(axis))
+        if met[1] <= 0:
+            return 0.0
+        strips = union.strips(
+            axis,
+            low + 0.5 * pitch,
+            pitch,
+            met,
+            self._chord_mm,
+            bins=piece.bins(axis, met, *union.bounds_mm),
+            top_mm=self._top_mm(levels),
+            start_is_cut=start_is_cut,
+        )
+        return float(np.sum(piece.cut(axis, strips)) * pitch)
+
+    def _top_mm(self, levels: int) -> float:
+        """Where the first plane above the material is, which is empty."""
+        return float(self.workpiece.low_mm[2] + (levels + 0.5) * self.workpiece.pitch_mm[2])
+
+    def united(self, sweeps: Sequence[Sweep]) -> list[Sweep | SweepUnion]:
+        """Sweeps of one body as one union, if they are several that reach above the material."""
+        union = SweepUnion.of(sweeps)
+        if len(sweeps) < _UNITED or not union.reaches_above(self._top_mm(self.workpiece.levels())):
+            return list(sweeps)
+        return [union]
 
     def _settled(self, axis: int, chain: Chain, count: int) -> int:
         """The first plane of a family on which the chain's section is in one piece; see `Chain.settled_mm`."""

@@ -6,6 +6,7 @@ Two stores implement one interface (`twin.workpiece.store.SliceStore` plus `cut`
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.cells import CELL_PITCHES, CellFamily
 from twin.geometry.column_cells.query_kernels import Planes
-from twin.geometry.column_cells.strips import NO_TOPS, Strips, Tops
+from twin.geometry.column_cells.strips import NO_TOPS, Bins, Strips, Tops
 from twin.geometry.polygons import clip
 from twin.geometry.polygons.lines import LineEnds, ring_line_ends
 from twin.geometry.polygons.region import Region
@@ -25,6 +26,8 @@ from twin.workpiece.store import PLANE_AXES
 LEAST_MM2, LEAST_SHARE = 1e-6, 1e-9
 #: Edges of a cell that has many are merged where they stay this near, in pitches: a hundredth of a chord's deviation.
 MERGE_PITCHES = 5e-5
+#: Width of the bins in which a store that does not know better is taken to have material.
+BIN_PITCHES = 1.0
 
 
 class TriSlices(ABC):
@@ -64,7 +67,7 @@ class TriSlices(ABC):
 
     @abstractmethod
     def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
-        """Subtract strips from a family's planes; returns the area taken from each plane of the strips.
+        """Subtract strips from a family's planes; returns the area that each takes.
 
         Args:
             apply: False measures only.
@@ -80,6 +83,18 @@ class TriSlices(ABC):
             base_mm: material lower than this need not be found.
         """
         return NO_TOPS
+
+    def bins(self, axis: int, met: tuple[int, int], low_mm: FloatArray, high_mm: FloatArray) -> Bins:
+        """Material in a box on consecutive planes of a family, as far as the store knows it.
+
+        Args:
+            met: the first plane, and how many.
+            low_mm, high_mm: corners of the box; material below it need not be found.
+        """
+        u = PLANE_AXES[axis][0]
+        low, high = max(low_mm[u], self.low_mm[u]), min(high_mm[u], self.high_mm[u])
+        size = float(BIN_PITCHES * self.pitch_mm[u])
+        return Bins(np.full((met[1], max(1, int((high - low) / size) + 1)), math.inf), float(low), size)
 
     @abstractmethod
     def areas_mm2(self, axis: int) -> FloatArray:
@@ -153,6 +168,12 @@ class CellSlices(TriSlices):
         """See `TriSlices.tops`."""
         return self._families[axis].tops(first, planes, range_u_mm, base_mm)
 
+    def bins(self, axis: int, met: tuple[int, int], low_mm: FloatArray, high_mm: FloatArray) -> Bins:
+        """See `TriSlices.bins`."""
+        u, v = PLANE_AXES[axis]
+        range_u, range_v = (low_mm[u], high_mm[u]), (low_mm[v], high_mm[v])
+        return self._families[axis].bins(met, range_u, range_v, tops=axis != 2)
+
     def areas_mm2(self, axis: int) -> FloatArray:
         """See `TriSlices.areas_mm2`."""
         return self._families[axis].area_mm2
@@ -206,12 +227,11 @@ class PolygonSlices(TriSlices):
 
     def cut(self, axis: int, strips: Strips, *, apply: bool = True) -> FloatArray:
         """See `TriSlices.cut`."""
-        removed = np.zeros(strips.planes)
-        for i in range(strips.planes):
+        removed = np.zeros(len(strips.at))
+        for i, k in enumerate(strips.at):
             outline = strips.outline(i)
             if outline is None:
                 continue
-            k = strips.first + i
             left = clip.difference(self._paths[axis][k], clip.to_paths([outline]))
             area = clip.area_mm2(left)
             removed[i] = self._areas[axis][k] - area

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry.column_cells import store_kernels as layout
+from twin.geometry.column_cells.bin_kernels import bin_tops, occupied_columns
 from twin.geometry.column_cells.cut_kernels import cut_planes
 from twin.geometry.column_cells.edge_kernels import EDGE_COLUMNS
 from twin.geometry.column_cells.fill_kernels import fill_plane
 from twin.geometry.column_cells.line_kernels import cell_lines
 from twin.geometry.column_cells.query_kernels import Planes, contains, plane_trapezoids, top_heights
-from twin.geometry.column_cells.strips import NO_TOPS, Strips, Tops
+from twin.geometry.column_cells.strips import NO_TOPS, Bins, Strips, Tops
 from twin.geometry.polygons import lines
 from twin.geometry.polygons.clip import union_convex
 from twin.geometry.polygons.region import Region
@@ -132,9 +133,10 @@ class CellFamily:
             self._scratch = _scratch(2 * len(self._scratch.out))
 
     def cut(self, strips: Strips, *, apply: bool = True) -> FloatArray:
-        """Subtract strips (or only measure with ``apply=False``); returns the area taken from each of their planes."""
-        self.ensure(strips.first, strips.first + strips.planes)
-        removed = np.zeros(strips.planes)
+        """Subtract strips (or only measure with ``apply=False``); returns the area that each takes."""
+        if len(strips.at):
+            self.ensure(int(strips.at[0]), int(strips.at[-1]) + 1)
+        removed = np.zeros(len(strips.at))
         cursor = np.zeros(3, dtype=np.int64)
         merge_mm = self._merge_mm if apply else -1.0
         while True:
@@ -143,7 +145,7 @@ class CellFamily:
                 break
             self._make_room(answer)
         if apply:
-            self.area_mm2[strips.first : strips.first + strips.planes] -= removed
+            np.subtract.at(self.area_mm2, strips.at, removed)
         return removed
 
     def tops(self, first: int, planes: int, range_u_mm: tuple[float, float], base_mm: float) -> Tops:
@@ -156,6 +158,28 @@ class CellFamily:
         heights = np.empty((planes, end - begin))
         top_heights(self.store, grid, first, begin, base_mm, heights)
         return Tops(heights, grid.u_low + begin * grid.size, grid.size)
+
+    def bins(
+        self, met: tuple[int, int], range_u_mm: tuple[float, float], range_v_mm: tuple[float, float], *, tops: bool
+    ) -> Bins:
+        """Material on consecutive planes in bins of a range of u and v.
+
+        Args:
+            met: the first plane, and how many.
+            tops: whether the height of the highest material is wanted, for which that above the range counts, too; or
+                only whether there is any.
+        """
+        grid, (first, planes) = self.grid, met
+        begin, end = (math.floor((u - grid.u_low) / grid.size) for u in range_u_mm)
+        begin, end = max(0, begin), min(grid.columns, end + 1)
+        self.ensure(first, first + planes)
+        heights = np.empty((planes, max(0, end - begin), CELL_PITCHES if tops else 1))
+        if tops:
+            bin_tops(self.store, grid, first, begin, range_v_mm[0], heights)
+        else:
+            occupied_columns(self.store, grid, first, begin, range_v_mm, heights)
+            heights = np.repeat(heights, CELL_PITCHES, axis=2)
+        return Bins(heights.reshape(planes, -1), grid.u_low + begin * grid.size, grid.size / CELL_PITCHES)
 
     def line_ends(
         self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]

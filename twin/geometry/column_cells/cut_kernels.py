@@ -51,7 +51,7 @@ from twin.geometry.column_cells.thin_kernels import MANY_EDGES, thinned
 from twin.jit import helper, njit
 
 #: Entries of a cursor: where a kernel that ran out of room goes on.
-PLANE, COLUMN, TILE = 0, 1, 2
+STRIP, COLUMN, TILE = 0, 1, 2
 
 
 class _Side(NamedTuple):
@@ -80,10 +80,10 @@ def cut_planes(
     """Subtract strips from planes, or only measure what they would remove.
 
     Args:
-        cursor: shape (3,): plane, column, tile to go on from; 0 at the first call, kept between calls.
+        cursor: shape (3,): strip, column, tile to go on from; 0 at the first call, kept between calls.
         merge_mm: how far edges of a cell with many may be moved to have fewer, see
             `twin.geometry.column_cells.thin_kernels`; 0 for none; negative to leave the planes as they are.
-        removed: shape (planes,), area taken from each plane, added to.
+        removed: shape (strips,), area taken by each strip, added to.
 
     Returns:
         DONE, or POOL_FULL / SCRATCH_FULL / CELLS_FULL / TABLES_FULL: make room and call again with the same cursor.
@@ -95,9 +95,9 @@ def cut_planes(
     work, out = scratch.work, scratch.out
     apply = merge_mm >= 0.0
     # 64-bit numbers throughout: helpers are compiled once for each type of their arguments
-    while cursor[PLANE] < len(offsets) - 1:
-        node, end = offsets[cursor[PLANE]], offsets[cursor[PLANE] + 1] - 1
-        plane = strips.first + cursor[PLANE]
+    while cursor[STRIP] < len(offsets) - 1:
+        node, end = offsets[cursor[STRIP]], offsets[cursor[STRIP] + 1] - 1
+        plane = strips.at[cursor[STRIP]]
         last_column = _last_column(nodes, end, grid) if end > node and table[plane, 0] != 0 else -1
         for column in range(max(_first_column(nodes, node, grid), cursor[COLUMN]), last_column + 1):
             part = strip_part(nodes, fresh, node, end, grid, column)
@@ -135,10 +135,10 @@ def cut_planes(
                 if answer != DONE:
                     cursor[COLUMN], cursor[TILE] = column, tile
                     return answer
-                removed[cursor[PLANE]] += area - area_above(out, 0, count, box.floor)
+                removed[cursor[STRIP]] += area - area_above(out, 0, count, box.floor)
             cursor[TILE] = 0
         cursor[COLUMN] = 0
-        cursor[PLANE] += 1
+        cursor[STRIP] += 1
     return DONE
 
 

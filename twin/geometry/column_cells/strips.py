@@ -1,4 +1,4 @@
-"""Sections of a convex body by consecutive parallel planes, each a strip lo(u) <= v <= hi(u)."""
+"""Sections of bodies by parallel planes, as strips lo(u) <= v <= hi(u)."""
 
 from __future__ import annotations
 
@@ -23,33 +23,41 @@ class Tops(NamedTuple):
     size: float
 
 
+class Bins(NamedTuple):
+    """Material on consecutive planes, in bins along u; beyond them there is none.
+
+    Attributes:
+        heights: shape (planes, bins): v of the highest material, -inf without any, inf where it is not known.
+        u_low, size: where the first bin begins, and their width, mm.
+    """
+
+    heights: FloatArray
+    u_low: float
+    size: float
+
+
 #: Heights that are not known.
 NO_TOPS = Tops(np.empty((0, 0)), 0.0, 1.0)
 
 
 class Strips(NamedTuple):
-    """One strip per plane; a plane that the body misses has no nodes.
+    """Strips of planes, of which several may lie on one plane; those of lower planes come first.
 
     Attributes:
-        first: index of the first plane.
-        offsets: shape (planes + 1,), first node of each plane.
-        nodes: shape (n, 3): u increasing on each plane, lo (convex in u), hi (concave in u), lo <= hi.
+        at: shape (strips,), index of each strip's plane.
+        offsets: shape (strips + 1,), first node of each strip; one that the body misses has none.
+        nodes: shape (n, 3): u increasing in each strip, lo, hi, lo <= hi.
         fresh: shape (n,), False where the strip holds no material, because it has been cut already; between two such
             nodes nothing is cut.
     """
 
-    first: int
+    at: NDArray[np.int64]
     offsets: NDArray[np.int64]
     nodes: FloatArray
     fresh: NDArray[np.bool_]
 
-    @property
-    def planes(self) -> int:
-        """Number of planes, those without nodes included."""
-        return len(self.offsets) - 1
-
     def outline(self, i: int) -> FloatArray | None:
-        """Polygon of the strip on plane ``first + i``, counter-clockwise, shape (n, 2), or None where there is none."""
+        """Polygon of a strip by its number, counter-clockwise, shape (n, 2), or None where there is none."""
         nodes = self.nodes[self.offsets[i] : self.offsets[i + 1]]
         if len(nodes) < 2:
             return None
