@@ -8,6 +8,7 @@ from itertools import groupby, pairwise
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.motion.chain import Chain, chained
@@ -121,6 +122,10 @@ class Material:
         chords = [_Waiting(Sweep(tool.cutter, a, b), tool.number) for a, b in pairwise(corners_mm[:-1])]
         return self._volume([*self._waiting.values(), *chords], tool.number)
 
+    def pending_sweeps(self, tool: ToolSetup, sweeps: Sequence[Sweep]) -> SweptVolume:
+        """Sweeps that are not yet subtracted from the slices, and after them those of the tool that come next."""
+        return self._volume([*self._waiting.values(), *(_Waiting(s, tool.number) for s in sweeps)], tool.number)
+
     def _volume(self, waiting: Sequence[_Waiting], tool: int) -> SweptVolume:
         behind_mm = [self._behind_mm if w.tool == tool else math.inf for w in waiting]
         return SweptVolume([w.sweep for w in waiting], behind_mm)
@@ -146,6 +151,20 @@ class Material:
     def near(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> bool:
         """Whether the box of a motion of any of a tool's bodies meets the stock's box."""
         return any(self._meets(body, start_mm, end_mm) for body in (tool.cutter, *(b for _, b in tool.rigid)))
+
+    def near_each(self, tool: ToolSetup, corners_mm: FloatArray) -> NDArray[np.bool_]:
+        """For each line of a path, whether the box of a motion of any of a tool's bodies meets the stock's box.
+
+        Args:
+            corners_mm: shape (n + 1, 3), ends of the lines.
+        """
+        low, high = np.minimum(corners_mm[:-1], corners_mm[1:]), np.maximum(corners_mm[:-1], corners_mm[1:])
+        near = np.zeros(len(low), dtype=np.bool_)
+        for body in (tool.cutter, *(b for _, b in tool.rigid)):
+            reach = np.array([body.radius_mm, body.radius_mm, 0.0])
+            above = np.all(high + reach + [0.0, 0.0, body.top_mm] > self.workpiece.low_mm, axis=1)
+            near |= above & np.all(low - reach + [0.0, 0.0, body.bottom_mm] < self.workpiece.high_mm, axis=1)
+        return near
 
     def rigid_near(self, tool: ToolSetup, corners_mm: FloatArray) -> bool:
         """Whether the box of a path of shank or holder meets the stock's box.
@@ -178,15 +197,19 @@ class Material:
             The touch, if it is forbidden and material was met.
         """
         if forbidden is None:
-            self._wait(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number))
-            self._together_mm = TOGETHER_DIAMETERS * 2.0 * tool.cutter.radius_mm
-            self._subtract(self._due([w.sweep.length_mm for w in self._waiting.values()]))
+            self.add(tool, Sweep(tool.cutter, start_mm, end_mm))
             return
         self.flush()
         met = self._removal.cut(Sweep(tool.guard, start_mm, end_mm), apply=False)
         if met > 0.0:
             self._wait(_Waiting(Sweep(tool.cutter, start_mm, end_mm), tool.number))
             yield Touch(forbidden, met, self._subtract(1))
+
+    def add(self, tool: ToolSetup, sweep: Sweep) -> None:
+        """A sweep of the cutting part: it removes material, now or a little later."""
+        self._wait(_Waiting(sweep, tool.number))
+        self._together_mm = TOGETHER_DIAMETERS * 2.0 * tool.cutter.radius_mm
+        self._subtract(self._due([w.sweep.length_mm for w in self._waiting.values()]))
 
     def touches(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> Iterator[Touch]:
         """Shank and holder moved in a straight line, after the cutting part has gone there; they remove nothing."""

@@ -23,6 +23,7 @@ from twin.record import Record, RunSummary
 from twin.simulation.chords import chord_groups, chord_steps, chords_are_steps, cut_in_chains
 from twin.simulation.clock import Turned
 from twin.simulation.contacts import Contacts, box_of, forbidden
+from twin.simulation.feed_runs import FeedRun, cut_feed_run, feed_runs
 from twin.simulation.level_runs import LevelRun, cut_level_run, level_runs
 from twin.simulation.setup import Setup, prepare
 from twin.simulation.short_motions import Joined, joined
@@ -49,11 +50,12 @@ def replayed(setup: Setup) -> Iterator[Record]:
 def _cut_all(setup: Setup) -> Iterator[Record]:
     """The records of a program's motions and events."""
     short = joined(setup.moves, setup.step_mm, setup.tolerance.join_mm)
-    for item in level_runs(short, setup.tools, setup.step_mm):
+    level = level_runs(short, setup.tools, setup.step_mm)
+    for item in feed_runs(level, setup.tools, setup.step_mm):
         yield from _one(item, setup)
 
 
-def _one(item: Move | Event | Joined | LevelRun, setup: Setup) -> Iterator[Record]:
+def _one(item: Move | Event | Joined | LevelRun | FeedRun, setup: Setup) -> Iterator[Record]:
     """The records of motions or of an event."""
     match item:
         case Move():
@@ -62,6 +64,8 @@ def _one(item: Move | Event | Joined | LevelRun, setup: Setup) -> Iterator[Recor
             yield from cut_joined(item, setup)
         case LevelRun():
             yield from _cut_run(item, setup)
+        case FeedRun():
+            yield from cut_feed_run(item, setup, lambda one: _one(one, setup))
         case _:
             yield setup.recorder.event(item)
 
