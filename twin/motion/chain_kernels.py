@@ -14,7 +14,7 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import Strips
 from twin.jit import helper, njit
-from twin.motion.disc_kernels import MOST_DISCS, disc_parts, radius_at, reached_by_all
+from twin.motion.disc_kernels import MOST_DISCS, disc_parts, reached_by_all
 from twin.motion.node_kernels import (
     INSET,
     MAX_DEPTH,

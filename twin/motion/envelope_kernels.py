@@ -230,7 +230,8 @@ def _lowest_of(body: BodyShape, row: FloatArray, w: float, u: float) -> float:
     """Lowest point of one sweep at u, inf where it does not cover that."""
     if u < row[FROM_U] or u > row[TO_U]:
         return math.inf
-    return max(lowest(body, Motion(row[0], row[1], row[2], row[3], row[4], row[5]), w, u), row[TIP])
+    motion = Motion(row[0], row[1], row[2], row[3], row[4], row[5])
+    return float(max(lowest(body, motion, w, u), row[TIP]))
 
 
 @helper

@@ -24,8 +24,9 @@ from twin.motion.swept_kernels import BodyShape
 _MOST = 24
 _U, _COUNT, _NEW, _FIRST = 0, 1, 2, 3
 _LINE = _FIRST + 2 * _MOST
-#: So few hulls are all looked at closely.
-_FEW = 3
+#: So few hulls are all looked at closely; and where the union's ends are this many chord deviations off a line at
+#: most, it is taken to be in one piece.
+_FEW, _ALMOST = 3, 16.0
 #: Columns of a hull: two discs; its range of u; from where to where along u its upper and lower tangents run, the v at
 #: their beginning, and their slopes.
 _U0, _V0, _R0, _U1, _V1, _R1, _FROM, _TO, _HA, _HB, _HV, _HS, _LA, _LB, _LV, _LS = range(16)
@@ -126,7 +127,8 @@ def _hulls(body: BodyShape, sweeps: FloatArray, z: float, chord: float, parts: F
 @helper
 def _put_tangent(hull: FloatArray, sense: float, column: int) -> None:
     """Write where the line runs that touches both discs at the side of larger (1) or smaller (-1) v; nowhere where
-    one disc holds the other."""
+    one disc holds the other.
+    """
     du, dv, grown = hull[_U1] - hull[_U0], sense * (hull[_V1] - hull[_V0]), hull[_R1] - hull[_R0]
     square = du * du + dv * dv
     hull[column], hull[column + 1], hull[column + 2], hull[column + 3] = math.inf, -math.inf, 0.0, 0.0
@@ -186,6 +188,7 @@ def _range(
         _line_at(plane, active[:count], u1, False, stack[0])
         _line_at(plane, active[:count], 0.5 * (u0 + u1), False, stack[1])
         solid = left[_COUNT] == 1.0 and stack[0, _COUNT] == 1.0 and stack[1, _COUNT] == 1.0
+        solid = solid and _is_straight(left, stack[1], stack[0], _ALMOST * plane.chord)
         if solid and count > _FEW:
             count = _at_boundary(plane, active[:count], (u0, u1), stack[1])
         n = _refine(plane, active[:count], solid, stack, left, pieces, n)

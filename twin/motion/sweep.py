@@ -20,7 +20,9 @@ from twin.tools.shape import ToolShape
 _ORDER = ((0, 1, 2), (1, 0, 2), (2, 0, 1))
 #: No tool on whose surface points lie.
 ANYWHERE = Fronts(Meridian(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), np.zeros((0, 3)), np.zeros(0, dtype=np.int32))
-EMPTY_STRIPS = Strips(np.zeros(0, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros((0, 3)), np.zeros(0, dtype=np.bool_))
+EMPTY_STRIPS = Strips(
+    np.zeros(0, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros((0, 3)), np.zeros(0, dtype=np.bool_)
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -103,7 +103,9 @@ class SweepUnion:
             strips = _empty(room)
             if fill(self.body.shape, sweeps, cut, bins, strips, used):
                 n, nodes = int(used[STRIPS]), int(used[NODES])
-                return Strips(strips.at[:n] + first, strips.offsets[: n + 1], strips.nodes[:nodes], strips.fresh[:nodes])
+                return Strips(
+                    strips.at[:n] + first, strips.offsets[: n + 1], strips.nodes[:nodes], strips.fresh[:nodes]
+                )
             room *= 2
 
 

@@ -72,15 +72,15 @@ def feed_runs(items: Iterable[Item], tools: Mapping[int, ToolSetup], step_mm: fl
     steps = 0.0
     for item in items:
         line = _line(item, tools, _LONGEST * step_mm)
-        if lines and (isinstance(item, Block) or (line is not None and steps < _MOST and _goes_on(lines[-1], line))):
+        goes_on = lines and line is not None and steps < _MOST and _goes_on(lines[-1], line)
+        if lines and not isinstance(item, LevelRun) and (goes_on or isinstance(item, Block)):
             held.append(item)
         else:
             yield from _released(held, lines)
             held, lines, steps = [], [], 0.0
-            if line is None:
+            if line is None or not isinstance(item, Move | Joined):
                 yield item
                 continue
-            assert isinstance(item, Move | Joined)
             held.append(item)
         if line is not None:
             lines.append(line)

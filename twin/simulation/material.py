@@ -11,13 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
-from twin.motion.chain import Chain, chained
+from twin.motion.chain import chained
 from twin.motion.sweep import Body, Sweep, SweptVolume
-from twin.motion.union import SweepUnion
 from twin.record import CollisionKind
 from twin.simulation.tools import ToolSetup
 from twin.tolerance import Tolerance
-from twin.workpiece.removal import Removal
+from twin.workpiece.removal import Removal, Swept
 from twin.workpiece.trislice import TriSlices
 
 #: Sweeps wait until the tool has gone on by this many slice pitches.
@@ -94,7 +93,7 @@ class Material:
         self._behind_mm = _BEHIND_CHORDS * tolerance.chord_mm
         self.removed_mm3: dict[int, float] = {}
         self._last_tool = 0
-        self._together_mm = 0.0
+        self._together_mm = self._waiting_mm = 0.0
         self._cut_to_mm: dict[_Plan, float] = {}
 
     def pending(self, tool: int, start_mm: FloatArray, feed: FloatArray) -> SweptVolume:
@@ -209,7 +208,8 @@ class Material:
         """A sweep of the cutting part: it removes material, now or a little later."""
         self._wait(_Waiting(sweep, tool.number))
         self._together_mm = TOGETHER_DIAMETERS * 2.0 * tool.cutter.radius_mm
-        self._subtract(self._due([w.sweep.length_mm for w in self._waiting.values()]))
+        if self._waiting_mm >= self._window_mm + self._together_mm or len(self._waiting) > TOGETHER:
+            self._subtract(self._due([w.sweep.length_mm for w in self._waiting.values()]))
 
     def touches(self, tool: ToolSetup, start_mm: FloatArray, end_mm: FloatArray) -> Iterator[Touch]:
         """Shank and holder moved in a straight line, after the cutting part has gone there; they remove nothing."""
@@ -258,6 +258,7 @@ class Material:
         """Let a sweep wait; returns its number."""
         self._number += 1
         self._waiting[self._number] = sweep
+        self._waiting_mm += sweep.sweep.length_mm
         return self._number
 
     def _swallows(self, later: Sweep, earlier: Sweep) -> bool:
@@ -299,9 +300,10 @@ class Material:
             after: the sweep that comes next, where nothing else waits.
         """
         taken = [self._waiting.pop(number) for number in list(self._waiting)[:count]]
+        self._waiting_mm = sum(w.sweep.length_mm for w in self._waiting.values())
         if not taken:
             return 0.0
-        sweeps: list[Sweep | Chain | SweepUnion] = []
+        sweeps: list[Swept] = []
         tools: list[int] = []
         for (tool, chord), together in groupby(taken, key=lambda w: (w.tool, w.plan is not None)):
             single = [w.sweep for w in together]

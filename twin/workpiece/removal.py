@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import NamedTuple, Self, TypeAlias
 
 import numpy as np
 
@@ -31,10 +31,14 @@ _UNITED = 3
 _CHAINS_LEFT = 3
 
 
+#: What is subtracted at once.
+Swept: TypeAlias = Sweep | Chain | SweepUnion
+
+
 class _Cut(NamedTuple):
     """A sweep to be subtracted, and the parts of it that need not be; see `Sweep.strips` and `Chain.strips`."""
 
-    sweep: Sweep | Chain | SweepUnion
+    sweep: Swept
     start_is_cut: bool
     end_is_left: bool
     band_mm: float
@@ -50,7 +54,7 @@ class Removal:
     def __init__(self, workpiece: TriSlices, chord_mm: float, threads: int = 2) -> None:
         self.workpiece = workpiece
         self._chord_mm = chord_mm
-        self._last: tuple[TriSlices, Sweep | Chain | SweepUnion] | None = None
+        self._last: tuple[TriSlices, Swept] | None = None
         self._left = 0
         self._retraced = Retraced()
         self._pool = ThreadPoolExecutor(max_workers=threads) if threads > 1 else None
@@ -63,7 +67,7 @@ class Removal:
         """
         return float(self.cut_all([sweep], apply=apply)[0])
 
-    def cut_all(self, sweeps: Sequence[Sweep | Chain | SweepUnion], *, apply: bool = True, after: Sweep | None = None) -> FloatArray:
+    def cut_all(self, sweeps: Sequence[Swept], *, apply: bool = True, after: Sweep | None = None) -> FloatArray:
         """Take the volumes of several sweeps out, one after the other.
 
         Args:
@@ -92,7 +96,7 @@ class Removal:
         last = self._last[1]
         return Sweep(last.body, last.end_mm, last.end_mm)
 
-    def _cuts(self, sweeps: Sequence[Sweep | Chain | SweepUnion], after: Sweep | None) -> list[_Cut]:
+    def _cuts(self, sweeps: Sequence[Swept], after: Sweep | None) -> list[_Cut]:
         """Several sweeps, each with the parts of it that need not be cut.
 
         The body between two chains that go down is left to the second, which goes deeper there; of two sweeps that
@@ -113,7 +117,7 @@ class Removal:
             before = sweep
         return cuts
 
-    def _touched(self, sweep: Sweep | Chain | SweepUnion) -> bool:
+    def _touched(self, sweep: Swept) -> bool:
         low, high = sweep.bounds_mm
         return bool(np.all(high > self.workpiece.low_mm) and np.all(low < self.workpiece.high_mm))
 

@@ -42,7 +42,12 @@ def strip(outline: FloatArray) -> Strips:
         values = np.interp(u[on], [u0, u1], [v0, v1]) if u1 > u0 else None
         for v in (v0, v1) if values is None else (values,):
             lo[on], hi[on] = np.minimum(lo[on], v), np.maximum(hi[on], v)
-    return Strips(0, np.array([0, len(u)]), np.column_stack((u, lo, hi)), np.ones(len(u), dtype=np.bool_))
+    return Strips(
+        np.zeros(1, dtype=np.int64),
+        np.array([0, len(u)]),
+        np.column_stack((u, lo, hi)),
+        np.ones(len(u), dtype=np.bool_),
+    )
 
 
 def strips(outlines: FloatArray) -> Iterator[Strips]:
@@ -59,7 +64,7 @@ def strips(outlines: FloatArray) -> Iterator[Strips]:
     lo, hi = np.where(on_edge, v, np.inf).min(axis=2), np.where(on_edge, v, -np.inf).max(axis=2)
     nodes = np.stack((u[:, :, 0], lo, hi), axis=2)
     ends, fresh = np.array([0, nodes.shape[1]]), np.ones(nodes.shape[1], dtype=np.bool_)
-    return (Strips(0, ends, polygon, fresh) for polygon in nodes)
+    return (Strips(np.zeros(1, dtype=np.int64), ends, polygon, fresh) for polygon in nodes)
 
 
 def capsule(rng: np.random.Generator) -> FloatArray:

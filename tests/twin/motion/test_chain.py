@@ -38,8 +38,8 @@ def sweeps(shape: ToolShape, corners: FloatArray) -> list[Sweep]:
 
 def polygon(strips: Strips, k: int) -> shapely.Geometry:
     """The section on plane ``k``, below z = 0."""
-    i = k - strips.first
-    outline = strips.outline(i) if 0 <= i < strips.planes else None
+    found = np.flatnonzero(strips.at == k)
+    outline = strips.outline(int(found[0])) if len(found) else None
     return shapely.Polygon() if outline is None else shapely.make_valid(shapely.Polygon(outline))
 
 
@@ -56,8 +56,8 @@ def test_a_chain_has_the_sections_of_its_sweeps(kind: str, from_rad: float, swee
     for axis in range(3):
         got = chain.strips(axis, low(axis), PITCH_MM, 40, CHORD_MM)
         parts = [sweep.strips(axis, low(axis), PITCH_MM, 40, 0.2 * CHORD_MM) for sweep in each]
-        assert got.planes == max(p.first + p.planes for p in parts) - min(p.first for p in parts)
-        for k in range(got.first, got.first + got.planes, 7):
+        assert len(got.at) == max(p.at[-1] for p in parts) - min(p.at[0] for p in parts) + 1
+        for k in range(got.at[0], got.at[-1] + 1, 7):
             have, want = polygon(got, k), shapely.union_all([polygon(p, k) for p in parts])
             # near the tip of a ball, sections that grow along the chain leave a gap that a strip fills
             thickness = 0.4 * CHORD_MM if axis != 2 or SHAPES[kind].corner_radius_mm == 0.0 else 2.0 * CHORD_MM
@@ -68,7 +68,7 @@ def test_a_section_that_is_all_of_the_tool_repeats_on_the_planes_above() -> None
     (chain,) = chained(sweeps(SHAPES["flat"], arc(3.0, 0.2, 0.6, 0.03, 3)))
     strips = chain.strips(2, -2.6, 0.5, 3, 0.1)
     first, second = strips.nodes[: strips.offsets[1]], strips.nodes[strips.offsets[1] : strips.offsets[2]]
-    assert strips.planes == 2
+    assert len(strips.at) == 2
     assert np.array_equal(first, second)
 
 
@@ -78,8 +78,8 @@ def test_where_the_body_at_the_end_is_left_nothing_is_fresh(kind: str) -> None:
     (chain,) = chained(sweeps(SHAPES[kind], corners))
     strips = chain.strips(0, 10.05, 1.0, 3, 0.1, end_is_left=True, top_mm=0.0)
     east, north, _ = corners[-1]
-    for i in range(strips.planes):
-        w = 10.55 + (strips.first + i)
+    for i in range(len(strips.at)):
+        w = 10.55 + strips.at[i]
         for n in range(strips.offsets[i], strips.offsets[i + 1]):
             if math.hypot(w - east, strips.nodes[n, 0] - north) < SHAPES[kind].disc_mm - 0.01:
                 assert not strips.fresh[n]
@@ -91,7 +91,7 @@ def test_a_chain_that_lies_below_another_is_a_band() -> None:
     (chain,) = chained(sweeps(SHAPES["ball"], arc(3.0, 0.2, 0.6, 0.03, 3)))
     strips = chain.strips(1, 9.0, 1.0, 2, 0.1, band_mm=0.25)
     assert np.allclose(strips.nodes[:, 2] - strips.nodes[:, 1], 0.25)
-    assert chain.strips(1, 9.0, 1.0, 2, 0.1, band_mm=-1.0).planes == 0
+    assert len(chain.strips(1, 9.0, 1.0, 2, 0.1, band_mm=-1.0).at) == 0
     whole, band = (chain.strips(2, -2.3, 1.0, 5, 0.1, band_mm=b) for b in (math.inf, 0.25))
     assert whole.offsets[-1] > whole.offsets[-2]
     assert band.offsets[-1] == band.offsets[-2]  # the whole radius of the tool has passed there

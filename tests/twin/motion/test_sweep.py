@@ -67,9 +67,9 @@ def test_sections_hold_the_swept_tool_and_little_more(kind: str, move: tuple[flo
     for axis in range(3):
         strips = sweep.strips(axis, -12.03, 1.97, 14, CHORD_MM)
         u_axis, v_axis = [a for a in range(3) if a != axis]
-        for i in range(strips.planes):
+        for i in range(len(strips.at)):
             points = rng.uniform(-8.0, 10.0, (SAMPLES, 3))
-            points[:, axis] = -12.03 + (strips.first + i + 0.5) * 1.97
+            points[:, axis] = -12.03 + (strips.at[i] + 0.5) * 1.97
             outline = strips.outline(i)
             inside = np.zeros(SAMPLES, dtype=bool)
             if outline is not None:
@@ -100,7 +100,7 @@ def test_volume_of_a_ball_sweep_is_the_closed_form() -> None:
     exact = np.pi / 2.0 * 16.0 * 10.0 + 2.0 / 3.0 * np.pi * 64.0
     for axis in range(3):
         strips = sweep.strips(axis, -10.0, 0.05, 600, 1e-4)
-        outlines = [strips.outline(i) for i in range(strips.planes)]
+        outlines = [strips.outline(i) for i in range(len(strips.at))]
         area = sum(shapely.Polygon(o).area for o in outlines if o is not None)
         assert area * 0.05 == pytest.approx(exact, rel=3e-4)
 
@@ -109,8 +109,8 @@ def test_a_tool_exactly_on_a_plane_is_cut_by_it() -> None:
     """The tip's plane and the top's plane are planes of the slices: the sections are there or empty, never wrong."""
     sweep = Sweep(Body.of(SHAPES["flat"], chord_mm=CHORD_MM), np.zeros(3), np.array([1.0, 0.0, 0.0]))
     strips = sweep.strips(2, -0.5, 1.0, 12, CHORD_MM)
-    areas = [0.0 if (o := strips.outline(i)) is None else shapely.Polygon(o).area for i in range(strips.planes)]
-    assert strips.first == 0
+    areas = [0.0 if (o := strips.outline(i)) is None else shapely.Polygon(o).area for i in range(len(strips.at))]
+    assert strips.at[0] == 0
     assert areas == pytest.approx([9.0 * np.pi + 6.0] * 6, rel=1e-3)
 
 
