@@ -115,7 +115,7 @@ class Chain:
 
 
 class Moving(Protocol):
-    """What a body has swept, from a first to a last tool tip."""
+    """Motion of a body from a first to a last tool tip."""
 
     @property
     def body(self) -> Body:

@@ -14,7 +14,7 @@ import numpy as np
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import Strips
 from twin.jit import helper, njit
-from twin.motion.disc_kernels import MOST_DISCS, disc_parts, reached_by_all
+from twin.motion.disc_kernels import disc_parts, reached_by_all
 from twin.motion.node_kernels import (
     INSET,
     MAX_DEPTH,
@@ -41,6 +41,8 @@ _OUTSET = 1.0 + 1e-9
 _PER_SQUARE, _BULGE = 6, 7
 #: Intervals halved less often than this are judged by a second point.
 _LOOK_TWICE = 3
+#: Most discs by which the section of a chord is described.
+_DISCS = 16
 #: Chords in a block.
 _BLOCK = 8
 
@@ -97,7 +99,7 @@ def chain_nodes(body: BodyShape, chords: FloatArray, planes: ChainPlanes, strips
     Returns:
         Number of nodes written, or -1 when they do not fit.
     """
-    stack, parts = np.empty((MAX_DEPTH + 2, NODE_FIELDS)), np.empty((2 * len(chords) + 4 * MOST_DISCS, 8))
+    stack, parts = np.empty((MAX_DEPTH + 2, NODE_FIELDS)), np.empty((2 * len(chords) + 4 * _DISCS, 8))
     offsets, nodes, fresh = strips.offsets, strips.nodes, strips.fresh
     unchanged = _unchanged_above(body, chords, planes)
     written, offsets[0] = 0, 0
@@ -177,7 +179,7 @@ def _plane_nodes(
 def _section(body: BodyShape, chords: FloatArray, planes: ChainPlanes, w: float, room: FloatArray) -> _Section:
     """The section by a plane, its parts and blocks in ``room``."""
     if planes.horizontal:
-        count = disc_parts(body, chords, w, planes.chord, room)
+        count = disc_parts(body, chords, w, planes.chord, _DISCS, room)
         low, high = _range_of_discs(room, count)
         blocks = 0
     else:

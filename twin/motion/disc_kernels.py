@@ -10,15 +10,16 @@ from twin.jit import helper
 from twin.motion.swept_kernels import BodyShape
 from twin.tools.meridian_kernels import profile_radius
 
-#: Most discs by which the section of a sweep is described.
-MOST_DISCS = 16
-
 
 @helper
-def disc_parts(body: BodyShape, chords: FloatArray, z: float, chord: float, parts: FloatArray) -> int:
+def disc_parts(body: BodyShape, chords: FloatArray, z: float, chord: float, most_discs: int, parts: FloatArray) -> int:
     """Sections of the chords at a height, as discs at two ends of each or of pieces of it; returns their number.
 
     Between the two discs the radius is taken to grow evenly, so chords at which it does not are divided.
+
+    Args:
+        chord: how far the radius may be off that, mm.
+        most_discs: by which the section of a chord is described at most.
     """
     tool, n = body.meridian, 0
     for i in range(len(chords)):
@@ -27,7 +28,7 @@ def disc_parts(body: BodyShape, chords: FloatArray, z: float, chord: float, part
         if first > last:
             continue
         shallow, deep = (first, last) if dz <= 0.0 else (last, first)
-        pieces, most = 1, min(MOST_DISCS, (len(parts) - n) // (2 * (len(chords) - i)))
+        pieces, most = 1, min(most_discs, (len(parts) - n) // (2 * (len(chords) - i)))
         while 2 * pieces <= most and not _grows_evenly(body, z - tip, dz, shallow, deep, pieces, chord):
             pieces *= 2
         for j in range(pieces):

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import Bins, Strips
 from twin.jit import helper, njit
-from twin.motion.disc_kernels import MOST_DISCS, disc_parts, radius_at
+from twin.motion.disc_kernels import disc_parts, radius_at
 from twin.motion.envelope_kernels import DEPTH, NARROWEST, NODES, STRIPS, UnionPlanes
 from twin.motion.node_kernels import INSET, NO_SECTION, SAME_SECTION, off_chord
 from twin.motion.swept_kernels import BodyShape
@@ -24,6 +24,8 @@ from twin.motion.swept_kernels import BodyShape
 _MOST = 24
 _U, _COUNT, _NEW, _FIRST = 0, 1, 2, 3
 _LINE = _FIRST + 2 * _MOST
+#: Most discs by which the section of a sweep is described.
+_DISCS = 64
 #: So few hulls are all looked at closely; and where the union's ends are this many chord deviations off a line at
 #: most, it is taken to be in one piece.
 _FEW, _ALMOST = 3, 16.0
@@ -61,7 +63,7 @@ def level_strips(
     Returns:
         Whether they fit.
     """
-    parts = np.empty((2 * MOST_DISCS * len(sweeps), 6))
+    parts = np.empty((2 * _DISCS * len(sweeps), 6))
     hulls, active = np.empty((len(parts), _HULL)), np.empty(len(parts), dtype=np.int64)
     stack, left = np.empty((DEPTH + 2, _LINE)), np.empty(_LINE)
     pieces = np.empty((4 * len(strips.nodes) + 64, _PIECE))
@@ -106,7 +108,7 @@ def _same_between(body: BodyShape, sweeps: FloatArray) -> tuple[float, float]:
 def _hulls(body: BodyShape, sweeps: FloatArray, z: float, chord: float, parts: FloatArray, hulls: FloatArray) -> int:
     """Write the hulls of a plane in order of where they begin along u; returns their number."""
     n = 0
-    for k in range(disc_parts(body, sweeps, z, chord, parts)):
+    for k in range(disc_parts(body, sweeps, z, chord, _DISCS, parts)):
         low = min(parts[k, _U0] - parts[k, _R0], parts[k, _U1] - parts[k, _R1])
         high = max(parts[k, _U0] + parts[k, _R0], parts[k, _U1] + parts[k, _R1])
         if not high - low > NO_SECTION * body.meridian.radius:
