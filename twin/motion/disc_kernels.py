@@ -51,10 +51,17 @@ def radius_at(body: BodyShape, above_tip: float) -> float:
 def _grows_evenly(
     body: BodyShape, height: float, dz: float, shallow: float, deep: float, pieces: int, chord: float
 ) -> bool:
-    """Whether the radius in the middle of the first piece of a chord is about the mean of those at its ends."""
-    end = shallow + (deep - shallow) / (pieces * pieces)
-    mean = 0.5 * (radius_at(body, height - shallow * dz) + radius_at(body, height - end * dz))
-    return abs(radius_at(body, height - 0.5 * (shallow + end) * dz) - mean) <= chord
+    """Whether the radius in the middle of the first and of the last piece of a chord is about the mean of their ends.
+
+    The radius grows fastest at the tip, where the first piece may begin; the last one is longest.
+    """
+    span = deep - shallow
+    for piece in (0, pieces - 1):
+        a, b = shallow + span * (piece / pieces) ** 2, shallow + span * ((piece + 1) / pieces) ** 2
+        mean = 0.5 * (radius_at(body, height - a * dz) + radius_at(body, height - b * dz))
+        if abs(radius_at(body, height - 0.5 * (a + b) * dz) - mean) > chord:
+            return False
+    return True
 
 
 @helper
