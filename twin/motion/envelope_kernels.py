@@ -271,8 +271,12 @@ def _begin(
 
 @helper
 def _write(u: float, lo: float, new: bool, top: float, strips: Strips, used: NDArray[np.int64]) -> bool:
-    """Append a node to the last strip; returns whether it fits."""
+    """Append a node to the last strip; returns whether it fits.
+
+    At the end of the range, rounding may hide the sweep; the strip is empty there then.
+    """
     n = used[NODES]
+    lo = lo if lo < math.inf else top
     if n >= len(strips.nodes):
         return False
     strips.nodes[n, 0], strips.nodes[n, 1], strips.nodes[n, 2] = u, lo, max(lo, top)
