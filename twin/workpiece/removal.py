@@ -108,12 +108,16 @@ class Removal:
             start_is_cut = self._left == 0 and follows(sweep, before)
             left = isinstance(sweep, Chain) and sweep.descends and self._left < _CHAINS_LEFT
             left = left and following is not None and follows(following, sweep)
+            cut: Swept = sweep
             band_mm = math.inf
             if isinstance(sweep, Chain):
                 band_mm = self._retraced.band_mm(sweep)
+                united = self.united(sweep.sweeps) if band_mm == math.inf else []
+                if len(united) == 1:
+                    cut, left = united[0], False
                 self._retraced.add(sweep, end_is_left=left)
             self._left = self._left + 1 if left else 0
-            cuts.append(_Cut(sweep, start_is_cut, left, band_mm))
+            cuts.append(_Cut(cut, start_is_cut, left, band_mm))
             before = sweep
         return cuts
 
