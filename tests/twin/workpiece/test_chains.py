@@ -117,7 +117,7 @@ def test_chords_that_were_cut_before_leave_a_band() -> None:
 
 @pytest.mark.parametrize("kind", ["ball", "bull", "taper"])
 @pytest.mark.parametrize("down_mm", [1.6, -1.6], ids=["down", "up"])
-def test_planes_that_a_tip_has_just_reached_are_cut_by_each_sweep(kind: str, down_mm: float) -> None:
+def test_planes_that_a_tip_has_just_reached_are_cut_as_by_each_sweep(kind: str, down_mm: float) -> None:
     """A quarter turn that goes through two planes: each of them is met by the tip within the chain."""
     sweeps = helix(kind, 1, abs(down_mm))[:8]
     if down_mm < 0.0:
@@ -129,4 +129,4 @@ def test_planes_that_a_tip_has_just_reached_are_cut_by_each_sweep(kind: str, dow
     planes = BLOCK.low_mm[2] + (np.arange(len(BLOCK.regions[2])) + 0.5) * PITCH_MM
     reached = (planes > chain.bounds_mm[0][2]) & (planes < chain.settled_mm)
     assert reached.sum() >= 2
-    assert np.array_equal(together.areas_mm2(2)[reached], alone.areas_mm2(2)[reached])
+    assert np.abs(together.areas_mm2(2) - alone.areas_mm2(2))[reached].max() < 4.0 * TOLERANCE.chord_mm
