@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.cutting import engagement_kernels as kernels
 from twin.cutting.edge_arrays import EdgeArrays, RowAngles
+from twin.geometry.column_cells.strips import HeightMap
 from twin.motion.sweep import SweptVolume
 from twin.motion.swept_kernels import Fronts
 from twin.record import Engagement
@@ -102,6 +103,17 @@ class Positions:
         )
 
 
+class Prepared(NamedTuple):
+    """Heights of the material about positions, by the planes across x and across y."""
+
+    over_x: HeightMap
+    over_y: HeightMap
+
+
+#: Material may be anywhere.
+_ANY_HEIGHT = HeightMap(np.full((1, 1), math.inf), -1e12, -1e12, 5e-13, 5e-13)
+
+
 class Engager:
     """Finds the engagement of one tool, position by position.
 
@@ -151,51 +163,68 @@ class Engager:
             np.array([feed_per_tooth_mm]),
             np.array([len(pending)], dtype=np.int64),
         )
-        self.prepare(at, workpiece)
-        found = self.engage_all(at, workpiece, pending, Scratch())
+        found = self.engage_all(at, workpiece, pending, self.prepare(at, workpiece), Scratch())
         if found is None or not found.summaries[0].cutting:
             return None
         return EngagementMap(found.share[0], found.turn[0], found.summaries[0])
 
-    def prepare(self, at: Positions, workpiece: TriSlices) -> None:
+    def prepare(self, at: Positions, workpiece: TriSlices) -> Prepared:
         """Make the workpiece ready for `engage_all` at these positions."""
         radius, top = self._shape.max_radius_mm, workpiece.high_mm[2]
-        low, high = at.tip_mm.min(axis=0), at.tip_mm.max(axis=0)
+        reach = np.array([radius, radius, 0.0])
+        low, high = at.tip_mm.min(axis=0) - reach, at.tip_mm.max(axis=0) + reach
+        high[2] = top
         if low[2] < top:
-            reach = np.array([radius, radius, 0.0])
-            workpiece.prepare(low - reach, np.array([high[0] + radius, high[1] + radius, top]))
+            workpiece.prepare(low, high)
+        if self._enough == 1 or low[2] >= top:
+            return Prepared(_ANY_HEIGHT, _ANY_HEIGHT)
+        return Prepared(workpiece.height_map(0, low, high), workpiece.height_map(1, low, high))
 
     def engage_all(
-        self, at: Positions, workpiece: TriSlices, pending: SweptVolume, scratch: Scratch
+        self, at: Positions, workpiece: TriSlices, pending: SweptVolume, prepared: Prepared, scratch: Scratch
     ) -> EngagementMaps | None:
         """The engagement at each of several positions, None where all are in air; threads may share it.
 
         Args:
             at: positions for which `prepare` was called, in any order.
+            prepared: its answer.
             scratch: memory of the calling thread. The maps are in it until it is used again.
         """
-        reach = float(workpiece.high_mm[2] - at.tip_mm[:, 2].min())
-        if reach <= 0.0:
+        reach = min(float(workpiece.high_mm[2]), self._top_mm(at, prepared)) - float(at.tip_mm[:, 2].min())
+        if not reach > 0.0:
             return None
         elements = min(len(self._edges.z_mm), int(np.searchsorted(self._edges.z_mm, reach)) + 1)
         status = scratch.array("status", np.int8, len(at), len(self._rows.cos), elements)
-        if not self._test_front(at, workpiece, pending, status, scratch):
+        if not self._test_front(at, workpiece, pending, status, prepared, scratch):
             return None
         share, turn = self._boundaries(at, workpiece, pending, status, scratch)
         return EngagementMaps(share, turn, self._summaries(at, status, share, turn))
 
+    def _top_mm(self, at: Positions, prepared: Prepared) -> float:
+        """Height of the material about positions; -inf where there is none."""
+        radius = self._shape.max_radius_mm
+        low, high = at.tip_mm[:, :2].min(axis=0) - radius, at.tip_mm[:, :2].max(axis=0) + radius
+        return max(
+            _highest(prepared.over_x, low[0], high[0], low[1], high[1]),
+            _highest(prepared.over_y, low[1], high[1], low[0], high[0]),
+        )
+
     def _test_front(
-        self, at: Positions, workpiece: TriSlices, pending: SweptVolume, status: NDArray[np.int8], scratch: Scratch
+        self,
+        at: Positions,
+        workpiece: TriSlices,
+        pending: SweptVolume,
+        status: NDArray[np.int8],
+        prepared: Prepared,
+        scratch: Scratch,
     ) -> bool:
         """Fill the status maps; returns whether any point is engaged."""
         points = scratch.array("points", np.float64, status.size, 3)
         entries = scratch.array("entries", np.int32, status.size)
         count = kernels.front_points(
-            at.tip_mm,
-            at.feed,
+            kernels.Front(at.tip_mm, at.feed, self._gate, prepared.over_x, prepared.over_y),
             self._rows,
             self._edge_arrays,
-            self._gate,
             status,
             points,
             entries,
@@ -283,6 +312,14 @@ class Engager:
         row_rad = 2.0 * math.pi / len(self._rows.cos)
         given = zip(out.tolist(), at.feed_mm_s.tolist(), at.feed_per_tooth_mm.tolist(), strict=True)
         return tuple(_summary(values, row_rad, feed_mm_s, chip_mm) for values, feed_mm_s, chip_mm in given)
+
+
+def _highest(over: HeightMap, w0: float, w1: float, u0: float, u1: float) -> float:
+    """Highest material of a map in a rectangle; -inf without any."""
+    first, last = (math.floor((w - over.w_low) * over.per_w) for w in (w0, w1))
+    begin, end = (math.floor((u - over.u_low) * over.per_u) for u in (u0, u1))
+    part = over.heights[max(0, first) : max(0, last + 1), max(0, begin) : max(0, end + 1)]
+    return float(part.max()) if part.size else -math.inf
 
 
 def _summary(values: list[float], row_rad: float, feed_mm_s: float, feed_per_tooth_mm: float) -> Engagement:

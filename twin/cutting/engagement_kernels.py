@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.cutting.edge_arrays import EdgeArrays, RowAngles
 from twin.cutting.equation_kernels import normal_along_feed
-from twin.jit import helper, njit
+from twin.geometry.column_cells.strips import HeightMap
+from twin.jit import helper, inlined, njit
 
 #: Entries of a summary: lowest and highest engaged point, extent sideways, number of rows engaged, area projected on
 #: the feed in mm2, largest n . f.
@@ -38,13 +39,27 @@ class Boundaries(NamedTuple):
     part: FloatArray
 
 
+class Front(NamedTuple):
+    """Where the front of a tool is, and where material may be.
+
+    Attributes:
+        tips, feeds: shape (steps, 3): tool tips in mm and unit feed directions.
+        gate: shape (elements or more,), least n . f of a front point of each element.
+        over_x, over_y: heights of the material by the planes across x and across y; there is none where both are lower.
+    """
+
+    tips: FloatArray
+    feeds: FloatArray
+    gate: FloatArray
+    over_x: HeightMap
+    over_y: HeightMap
+
+
 @njit
 def front_points(
-    tips: FloatArray,
-    feeds: FloatArray,
+    front: Front,
     angles: RowAngles,
     edges: EdgeArrays,
-    gate: FloatArray,
     status: NDArray[np.int8],
     points: FloatArray,
     entries: NDArray[np.int32],
@@ -52,15 +67,14 @@ def front_points(
     """Midpoints of the edge elements, at every angle of the maps, whose normal looks along the feed.
 
     Args:
-        tips, feeds: shape (steps, 3): tool tips in mm and unit feed directions.
-        gate: shape (elements or more,), least n . f of a front point of each element.
         status: shape (steps, rows, elements), set to 0 at front points, -1 elsewhere; its elements are the lowest.
-        points: shape (n, 3), the points.
+        points: shape (n, 3), the points where material may be.
         entries: shape (n,), their indices in the maps, counted through steps, rows and elements.
 
     Returns:
-        Number of front points.
+        Number of points.
     """
+    tips, feeds, gate = front.tips, front.feeds, front.gate
     cos_theta, sin_theta, elements = angles.cos, angles.sin, status.shape[2]
     radius, height, cos_kappa, sin_kappa = edges.radius, edges.height, edges.cos_kappa, edges.sin_kappa
     n = 0
@@ -78,14 +92,23 @@ def front_points(
             for i in range(elements):
                 if normal_along_feed(across, down, sin_kappa[i], cos_kappa[i]) > gate[i]:
                     status[s, j, i] = 0
-                    points[n, 0] = x + radius[i] * cos_t
-                    points[n, 1] = y + radius[i] * sin_t
-                    points[n, 2] = z + height[i]
-                    entries[n] = first + i
-                    n += 1
+                    px, py, pz = x + radius[i] * cos_t, y + radius[i] * sin_t, z + height[i]
+                    if pz < _height_at(front.over_x, px, py) or pz < _height_at(front.over_y, py, px):
+                        points[n, 0], points[n, 1], points[n, 2] = px, py, pz
+                        entries[n] = first + i
+                        n += 1
                 else:
                     status[s, j, i] = -1
     return n
+
+
+@inlined
+def _height_at(over: HeightMap, w: float, u: float) -> float:
+    """Height of the material at a point in plan, -inf without any."""
+    k, b = (w - over.w_low) * over.per_w, (u - over.u_low) * over.per_u
+    if k < 0.0 or b < 0.0 or k >= over.heights.shape[0] or b >= over.heights.shape[1]:
+        return -math.inf
+    return over.heights[int(k), int(b)]
 
 
 @njit

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.strips import NO_TOPS, Strips, Tops
 from twin.motion.section_kernels import Planes, section_nodes
-from twin.motion.swept_kernels import BodyShape, Fronts, Motion, Sweeps, outside_sweeps
+from twin.motion.swept_kernels import GROUP, BodyShape, Fronts, Motion, Sweeps, outside_sweeps
 from twin.tools.meridian import Meridian
 from twin.tools.shape import ToolShape
 
@@ -171,11 +171,16 @@ class SweptVolume:
     """
 
     def __init__(self, sweeps: Sequence[Sweep], behind_mm: Sequence[float] | None = None) -> None:
+        starts = np.array([s.start_mm for s in sweeps])
+        ends = np.array([s.end_mm for s in sweeps])
+        behind = np.full(len(sweeps), math.inf) if behind_mm is None else np.array(behind_mm, dtype=np.float64)
         self._sweeps = Sweeps(
             bodies=np.array([(*s.body.shape.meridian, s.body.shape.drop) for s in sweeps]),
-            starts=np.array([s.start_mm for s in sweeps]),
-            moves=np.array([s.end_mm - s.start_mm for s in sweeps]),
-            behind=np.full(len(sweeps), math.inf) if behind_mm is None else np.array(behind_mm, dtype=np.float64),
+            starts=starts,
+            moves=ends - starts,
+            behind=behind,
+            boxes=_boxes(starts, ends),
+            far=np.maximum.reduceat(behind, np.arange(0, len(sweeps), GROUP)) if len(sweeps) else behind,
         )
 
     def __len__(self) -> int:
@@ -199,3 +204,13 @@ class SweptVolume:
             if counts is None:
                 counts = np.full(len(points_mm), len(self), dtype=np.int64)
             outside_sweeps(points_mm, in_material, counts, self._sweeps, depth_mm, fronts)
+
+
+def _boxes(starts_mm: FloatArray, ends_mm: FloatArray) -> FloatArray:
+    """Middle and half the size of the box about the tips of each group of sweeps, shape (groups, 6)."""
+    if not len(starts_mm):
+        return np.zeros((0, 6))
+    groups = np.arange(0, len(starts_mm), GROUP)
+    low = np.minimum.reduceat(np.minimum(starts_mm, ends_mm), groups)
+    high = np.maximum.reduceat(np.maximum(starts_mm, ends_mm), groups)
+    return np.hstack((0.5 * (low + high), 0.5 * (high - low)))

@@ -29,6 +29,8 @@ from twin.tools.meridian_kernels import (
 
 #: Most steps of a search, every how many a bracket is halved, and the part of its first width at which it ends.
 _SEARCH_STEPS, _BISECT_EACH, _SEARCHED = 80, 3, 1e-7
+#: Sweeps in a group.
+GROUP = 8
 #: A point nearer to the axis than this part of the flat bottom's radius is on it.
 _ON_BOTTOM = 1.0 - 1e-12
 _RADIUS = Meridian._fields.index("radius")
@@ -341,12 +343,16 @@ class Sweeps(NamedTuple):
         starts, moves: shape (m, 3), start and motion of the tool tip, mm.
         behind: shape (m,), how far a whole sweep must lie behind the tangent plane of a tool's surface for none of it
             to reach the tangent point, mm; inf where bodies are those of another tool.
+        boxes: shape (groups, 6), middle and half the size of a box about the tips of each `GROUP` sweeps.
+        far: shape (groups,), largest ``behind`` of each group.
     """
 
     bodies: FloatArray
     starts: FloatArray
     moves: FloatArray
     behind: FloatArray
+    boxes: FloatArray
+    far: FloatArray
 
 
 class Fronts(NamedTuple):
@@ -403,7 +409,14 @@ def outside_sweeps(
         touching = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if on_tool:
             touching = _tangent_plane(fronts, i, x, y, z)
-        for j in range(counts[i] - 1, -1, -1):
+        j = counts[i]
+        while j > 0:
+            j -= 1
+            if on_tool and (j + 1 == counts[i] or j % GROUP == GROUP - 1):
+                group = j // GROUP
+                if _group_is_behind(touching, sweeps.boxes, group, -sweeps.far[group]):
+                    j = group * GROUP
+                    continue
             if on_tool and _is_behind(touching, starts, moves, j, -behind[j]):
                 continue
             motion = Motion(starts[j, 0], moves[j, 0], starts[j, 1], moves[j, 1], starts[j, 2], moves[j, 2])
@@ -429,6 +442,18 @@ def _tangent_plane(fronts: Fronts, i: int, x: float, y: float, z: float) -> Moti
     if rho == 0.0:
         return Motion(tips[s, 0], 0.0, tips[s, 1], 0.0, tips[s, 2], -cosine)
     return Motion(tips[s, 0], sine * east / rho, tips[s, 1], sine * north / rho, tips[s, 2], -cosine)
+
+
+@helper
+def _group_is_behind(touching: Motion, boxes: FloatArray, group: int, most: float) -> bool:
+    """Whether all tips in a box are less than ``most`` before a tangent plane's tip; see `_is_behind`."""
+    at = (
+        (boxes[group, 0] - touching.w) * touching.dw
+        + (boxes[group, 1] - touching.u) * touching.du
+        + (boxes[group, 2] - touching.v) * touching.dv
+    )
+    reach = boxes[group, 3] * abs(touching.dw) + boxes[group, 4] * abs(touching.du) + boxes[group, 5] * abs(touching.dv)
+    return at + reach < most
 
 
 @helper

@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 
 from twin.arrays import FloatArray
-from twin.cutting.engagement import NO_ENGAGEMENT, Positions, Scratch
+from twin.cutting.engagement import NO_ENGAGEMENT, Positions, Prepared, Scratch
 from twin.motion.sweep import SweptVolume
 from twin.record import Engagement
 from twin.simulation.tools import ToolSetup
@@ -78,12 +78,13 @@ class StepSolver:
         Returns:
             A function that waits for the answer, one `Solved` per step.
         """
-        tool.engager.prepare(at, self._workpiece)
+        prepared = tool.engager.prepare(at, self._workpiece)
         size = max(1, min(PART, PART_ENTRIES // tool.engager.entries))
 
         def part(first: int) -> list[Solved]:
             last = min(first + size, len(at))
-            return self._part(tool, at.part(first, last), spindle_rad[first:last], spindle_rpm[first:last], pending)
+            of_part = at.part(first, last), spindle_rad[first:last], spindle_rpm[first:last]
+            return self._part(tool, *of_part, pending, prepared)
 
         firsts = range(0, len(at), size)
         parts = map(part, firsts) if self._pool is None else self._pool.map(part, firsts)
@@ -96,8 +97,9 @@ class StepSolver:
         spindle_rad: Sequence[FloatArray],
         spindle_rpm: FloatArray,
         pending: SweptVolume,
+        prepared: Prepared,
     ) -> list[Solved]:
-        maps = tool.engager.engage_all(at, self._workpiece, pending, self._scratch())
+        maps = tool.engager.engage_all(at, self._workpiece, pending, prepared, self._scratch())
         if maps is None:
             return [IN_AIR] * len(at)
         loads: Sequence[FloatArray | None] = [None] * len(at)

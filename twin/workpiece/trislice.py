@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.cells import CELL_PITCHES, CellFamily
 from twin.geometry.column_cells.query_kernels import Planes
-from twin.geometry.column_cells.strips import NO_TOPS, Bins, Strips, Tops
+from twin.geometry.column_cells.strips import NO_TOPS, Bins, HeightMap, Strips, Tops
 from twin.geometry.polygons import clip
 from twin.geometry.polygons.lines import LineEnds, ring_line_ends
 from twin.geometry.polygons.region import Region
@@ -95,6 +95,19 @@ class TriSlices(ABC):
         low, high = max(low_mm[u], self.low_mm[u]), min(high_mm[u], self.high_mm[u])
         size = float(BIN_PITCHES * self.pitch_mm[u])
         return Bins(np.full((met[1], max(1, int((high - low) / size) + 1)), math.inf), float(low), size)
+
+    def height_map(self, axis: int, low_mm: FloatArray, high_mm: FloatArray) -> HeightMap:
+        """Heights of the material in a box, by one family of vertical planes.
+
+        Args:
+            axis: 0 or 1.
+            low_mm, high_mm: corners of the box; material below it need not be found.
+        """
+        low, pitch = float(self.low_mm[axis]), float(self.pitch_mm[axis])
+        first = max(0, math.floor((low_mm[axis] - low) / pitch))
+        last = min(self.count(axis) - 1, math.floor((high_mm[axis] - low) / pitch))
+        bins = self.bins(axis, (first, max(0, last + 1 - first)), low_mm, high_mm)
+        return HeightMap(bins.heights, low + first * pitch, bins.u_low, 1.0 / pitch, 1.0 / bins.size)
 
     @abstractmethod
     def areas_mm2(self, axis: int) -> FloatArray:

@@ -179,7 +179,8 @@ class CellFamily:
         else:
             occupied_columns(self.store, grid, first, begin, range_v_mm, heights)
             heights = np.repeat(heights, CELL_PITCHES, axis=2)
-        return Bins(heights.reshape(planes, -1), grid.u_low + begin * grid.size, grid.size / CELL_PITCHES)
+        heights = heights.reshape(planes, CELL_PITCHES * heights.shape[1])
+        return Bins(heights, grid.u_low + begin * grid.size, grid.size / CELL_PITCHES)
 
     def line_ends(
         self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]

@@ -36,6 +36,22 @@ class Bins(NamedTuple):
     size: float
 
 
+class HeightMap(NamedTuple):
+    """Heights of the material of consecutive vertical planes, in bins along them; beyond them there is none.
+
+    Attributes:
+        heights: shape (planes, bins); see `Bins`.
+        w_low, u_low: where the space nearest to the first plane, and the first bin, begin, mm.
+        per_w, per_u: planes and bins in a millimetre.
+    """
+
+    heights: FloatArray
+    w_low: float
+    u_low: float
+    per_w: float
+    per_u: float
+
+
 #: Heights that are not known.
 NO_TOPS = Tops(np.empty((0, 0)), 0.0, 1.0)
 
