@@ -247,10 +247,12 @@ class Engager:
         Args:
             steps: shape (n,), the position that each point belongs to; only used where sweeps are pending.
         """
-        votes = np.zeros(len(points), dtype=np.int8)
-        if len(points):
-            workpiece.count_votes(points, self._enough, votes)
-        inside = votes >= self._enough
+        if self._enough == 1:
+            votes = np.zeros(len(points), dtype=np.int8)
+            workpiece.count_votes(points, 1, votes)
+            inside = votes > 0
+        else:
+            inside = workpiece.most_contain(points)
         if len(pending):
             fronts = Fronts(self._shape.meridian, at.tip_mm, steps)
             pending.clear(points, inside, self._tolerance.depth_mm, at.waiting[steps], fronts)

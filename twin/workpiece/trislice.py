@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from twin.arrays import FloatArray
 from twin.geometry.column_cells.cells import CELL_PITCHES, CellFamily
-from twin.geometry.column_cells.query_kernels import Planes
+from twin.geometry.column_cells.query_kernels import Planes, most_contain
 from twin.geometry.column_cells.strips import NO_TOPS, Bins, HeightMap, Strips, Tops
 from twin.geometry.polygons import clip
 from twin.geometry.polygons.lines import LineEnds, ring_line_ends
@@ -135,6 +135,12 @@ class TriSlices(ABC):
             votes: shape (n,), starts at 0; at least ``enough`` on return where the point is in material.
         """
 
+    def most_contain(self, points_mm: FloatArray) -> NDArray[np.bool_]:
+        """Whether points (n, 3) lie in material on the nearest planes of at least two families; see `count_votes`."""
+        votes = np.zeros(len(points_mm), dtype=np.int8)
+        self.count_votes(points_mm, 2, votes)
+        return np.asarray(votes >= 2)
+
     @abstractmethod
     def prepare(self, low_mm: FloatArray, high_mm: FloatArray) -> None:
         """Build the planes inside a box, before points are tested."""
@@ -225,9 +231,18 @@ class CellSlices(TriSlices):
         for tested, axis in enumerate((0, 1, 2)):
             self._vote(points_mm, axis, enough - (3 - tested), enough - 1, votes)
 
+    def most_contain(self, points_mm: FloatArray) -> NDArray[np.bool_]:
+        """See `TriSlices.most_contain`."""
+        inside = np.empty(len(points_mm), dtype=np.bool_)
+        x, y, z = (family.tested(self._planes(axis)) for axis, family in enumerate(self._families))
+        most_contain(points_mm, x, y, z, inside)
+        return inside
+
+    def _planes(self, axis: int) -> Planes:
+        return Planes(axis, *PLANE_AXES[axis], float(self.low_mm[axis]), float(self.pitch_mm[axis]))
+
     def _vote(self, points_mm: FloatArray, axis: int, least: int, most: int, votes: NDArray[np.int8]) -> None:
-        planes = Planes(axis, *PLANE_AXES[axis], float(self.low_mm[axis]), float(self.pitch_mm[axis]))
-        self._families[axis].vote(points_mm, planes, votes, least, most)
+        self._families[axis].vote(points_mm, self._planes(axis), votes, least, most)
 
 
 class PolygonSlices(TriSlices):

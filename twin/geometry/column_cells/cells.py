@@ -17,7 +17,7 @@ from twin.geometry.column_cells.cut_kernels import cut_planes
 from twin.geometry.column_cells.edge_kernels import EDGE_COLUMNS
 from twin.geometry.column_cells.fill_kernels import fill_plane
 from twin.geometry.column_cells.line_kernels import cell_lines
-from twin.geometry.column_cells.query_kernels import Planes, contains, plane_trapezoids, top_heights
+from twin.geometry.column_cells.query_kernels import Family, Planes, contains, plane_trapezoids, top_heights
 from twin.geometry.column_cells.strips import NO_TOPS, Bins, Strips, Tops
 from twin.geometry.polygons import lines
 from twin.geometry.polygons.clip import union_convex
@@ -179,8 +179,8 @@ class CellFamily:
         else:
             occupied_columns(self.store, grid, first, begin, range_v_mm, heights)
             heights = np.repeat(heights, CELL_PITCHES, axis=2)
-        heights = heights.reshape(planes, CELL_PITCHES * heights.shape[1])
-        return Bins(heights, grid.u_low + begin * grid.size, grid.size / CELL_PITCHES)
+        flat = heights.reshape(planes, CELL_PITCHES * heights.shape[1])
+        return Bins(flat, grid.u_low + begin * grid.size, grid.size / CELL_PITCHES)
 
     def line_ends(
         self, planes: NDArray[np.int64], fixed: int, at_mm: FloatArray, window_mm: tuple[float, float]
@@ -197,6 +197,10 @@ class CellFamily:
     def vote(self, points_mm: FloatArray, planes: Planes, votes: NDArray[np.int8], least: int, most: int) -> None:
         """Vote for each point (n, 3) with material on the nearest plane and ``least`` to ``most`` votes so far."""
         contains(points_mm, planes, self.grid, self.store, votes, least, most)
+
+    def tested(self, planes: Planes) -> Family:
+        """What a test of points needs."""
+        return Family(planes, self.grid, self.store)
 
     def region(self, k: int) -> Region:
         """Material on a plane as rings."""

@@ -66,6 +66,30 @@ def contains(
             votes[i] += 1
 
 
+class Family(NamedTuple):
+    """One family of planes and its cells."""
+
+    planes: Planes
+    grid: Grid
+    store: CellStore
+
+
+@njit
+def most_contain(points: FloatArray, x: Family, y: Family, z: Family, inside: NDArray[np.bool_]) -> None:
+    """Whether points lie in material on the nearest planes of at least two of three families.
+
+    Args:
+        points: shape (n, 3).
+        inside: shape (n,), filled.
+    """
+    votes = np.zeros(len(points), dtype=np.int8)
+    contains(points, x.planes, x.grid, x.store, votes, 0, 0)
+    contains(points, y.planes, y.grid, y.store, votes, 0, 1)
+    contains(points, z.planes, z.grid, z.store, votes, 1, 1)
+    for i in range(len(points)):
+        inside[i] = votes[i] > 1
+
+
 @njit
 def top_heights(store: CellStore, grid: Grid, first: int, first_column: int, base: float, heights: FloatArray) -> None:
     """Height of the highest material in columns of consecutive planes.
