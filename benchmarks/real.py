@@ -1,10 +1,11 @@
 """Replays of programs like those that CAM systems write: prints one JSON object.
 
-    python -m benchmarks.real [--only TEXT] [--seconds 5] [--threads 2] [--no-forces] [--profile] [--mold 50000]
+    python -m benchmarks.real [--only TEXT] [--seconds 5] [--threads 2] [--no-forces] [--profile] [--whole]
 
 The machine time of each program's first part over the processor time and the wall time of its replay, without its
 set-up. The stages of the example's mold are replayed on stocks that lie above the part by their allowance. A first
-short replay of each, which loads or compiles the code, does not count.
+short replay of each, which loads or compiles the code, does not count. With --whole, the stages of the mold are
+replayed to their end, and the processor time a millimetre in the last tenth of the path is compared with the first.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from benchmarks.mold import write_mold
 from benchmarks.real_programs import CASES, CUTTING
@@ -74,7 +77,7 @@ def jobs(folder: Path, options: argparse.Namespace) -> Iterator[tuple[str, Job, 
     if options.only in "mold, rough, semi, finish" or options.only.startswith("mold"):
         for name, job in mold_jobs(folder, options.mold, forces=not options.no_forces):
             if options.only in name:
-                yield name, job, _MOLD_SECONDS, False
+                yield name, job, math.inf if options.whole else _MOLD_SECONDS, False
 
 
 def replayed(job: Job, seconds: float, threads: int, archive: Path | None) -> dict[str, Any]:
@@ -87,11 +90,15 @@ def replayed(job: Job, seconds: float, threads: int, archive: Path | None) -> di
         set_up_s = time.process_time() - cpu
         cpu, wall = time.process_time(), time.perf_counter()
         first_cut_s, motions, line, steps = math.inf, 0, -1, 0
+        path_mm, spent_s = [0.0], [0.0]
         for record in run:
             if sink is not None:
                 sink.write(record)
             if isinstance(record, Step):
                 steps, motions, line = steps + 1, motions + (record.nc_line != line), record.nc_line
+                if record.engagement.cutting:
+                    path_mm.append(path_mm[-1] + math.dist(record.start_mm, record.end_mm))
+                    spent_s.append(time.process_time() - cpu)
                 first_cut_s = min(first_cut_s, record.t_s if record.engagement.cutting else math.inf)
                 if record.t_s - first_cut_s > seconds:
                     break
@@ -103,6 +110,7 @@ def replayed(job: Job, seconds: float, threads: int, archive: Path | None) -> di
         "machine over wall time": round(summary.machine_time_s / wall, 2),
         "cpu_s": round(cpu, 2),
         "set_up_s": round(set_up_s, 2),
+        "last tenth over first": round(_last_over_first(path_mm, spent_s), 2),
         "ms a step": round(1000.0 * cpu / max(1, steps), 3),
         "ms a motion": round(1000.0 * cpu / max(1, motions), 3),
         "removed_mm3": round(summary.removed_volume_mm3, 3),
@@ -112,6 +120,12 @@ def replayed(job: Job, seconds: float, threads: int, archive: Path | None) -> di
     }
 
 
+def _last_over_first(path_mm: list[float], spent_s: list[float]) -> float:
+    """Time a millimetre in the last tenth of a path over that in the first."""
+    tenths = np.interp(np.array([0.0, 0.1, 0.9, 1.0]) * path_mm[-1], path_mm, spent_s)
+    return float((tenths[3] - tenths[2]) / max(tenths[1] - tenths[0], 1e-9))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="rows whose name contains this text")
@@ -119,6 +133,7 @@ def main() -> None:
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--no-forces", action="store_true")
     parser.add_argument("--profile", action="store_true", help="print where the time goes")
+    parser.add_argument("--whole", action="store_true", help="replay the mold's stages to their end")
     parser.add_argument("--mold", type=int, default=50_000, help="triangles of the mold")
     options = parser.parse_args()
     rows = {}
@@ -126,7 +141,7 @@ def main() -> None:
         folder = Path(name)
         for title, job, seconds, archive in jobs(folder, options):
             seconds = min(seconds, options.seconds)
-            replayed(job, 0.02 * seconds, options.threads, None)
+            replayed(job, min(2.0, 0.1 * seconds), options.threads, None)
             profile = cProfile.Profile()
             if options.profile:
                 profile.enable()

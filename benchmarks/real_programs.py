@@ -125,8 +125,8 @@ def _pocket() -> Iterator[str]:
         yield "G0 Z5"
 
 
-def _slot() -> Iterator[str]:
-    yield "G0 X-6 Y15\nG43 H1 Z5\nZ-2\nG1 X400 F200"
+def _slot(feed: float) -> Iterator[str]:
+    yield f"G0 X-6 Y15\nG43 H1 Z5\nZ-2\nG1 X400 F{feed:g}"
 
 
 CASES: dict[str, Case] = {
@@ -189,11 +189,19 @@ CASES: dict[str, Case] = {
         forces=False,
     ),
     "slot, 200 mm/min": Case(
-        blocks=_slot,
+        blocks=lambda: _slot(200.0),
         tool={"kind": "ball", "diameter_mm": 8.0},
         rpm=3600,
         box_mm=((0.0, 0.0, -20.0), (400.0, 30.0, 0.0)),
         fineness=(0.1, 1.0),
         seconds=60.0,
+    ),
+    "slot, 2000 mm/min": Case(
+        blocks=lambda: _slot(2000.0),
+        tool={"kind": "ball", "diameter_mm": 8.0},
+        rpm=3600,
+        box_mm=((0.0, 0.0, -20.0), (400.0, 30.0, 0.0)),
+        fineness=(0.1, 1.0),
+        seconds=10.0,
     ),
 }

@@ -104,12 +104,16 @@ class Positions:
 
 
 class Prepared(NamedTuple):
-    """Heights of the material about positions, by the planes across x and across y."""
+    """Heights of the material about positions, by the planes across x and across y, if they are known."""
 
+    known: bool
     over_x: HeightMap
     over_y: HeightMap
 
 
+#: Heights of the material are worth finding where this part of the front is above it; elsewhere they are tried again
+#: after so many calls.
+_WORTH, _WITHOUT = 0.3, 16
 #: Material may be anywhere.
 _ANY_HEIGHT = HeightMap(np.full((1, 1), math.inf), -1e12, -1e12, 5e-13, 5e-13)
 
@@ -132,6 +136,7 @@ class Engager:
         self._rows, self._edge_arrays = row_angles(rows), edge_arrays(edges)
         end_edge = edges.kappa_rad == 0.0
         self._gate = np.where(end_edge, math.sin(math.radians(DISH_DEG)), tolerance.gate)
+        self._worth, self._without = True, 0
         self._middle = 0.5 * (edges.bounds_mm[:-1] + edges.bounds_mm[1:])
 
     @property
@@ -176,9 +181,10 @@ class Engager:
         high[2] = top
         if low[2] < top:
             workpiece.prepare(low, high)
-        if self._enough == 1 or low[2] >= top:
-            return Prepared(_ANY_HEIGHT, _ANY_HEIGHT)
-        return Prepared(workpiece.height_map(0, low, high), workpiece.height_map(1, low, high))
+        self._without = 0 if self._worth else (self._without + 1) % _WITHOUT
+        if self._enough == 1 or low[2] >= top or self._without > 0:
+            return Prepared(False, _ANY_HEIGHT, _ANY_HEIGHT)
+        return Prepared(True, workpiece.height_map(0, low, high), workpiece.height_map(1, low, high))
 
     def engage_all(
         self, at: Positions, workpiece: TriSlices, pending: SweptVolume, prepared: Prepared, scratch: Scratch
@@ -221,14 +227,17 @@ class Engager:
         """Fill the status maps; returns whether any point is engaged."""
         points = scratch.array("points", np.float64, status.size, 3)
         entries = scratch.array("entries", np.int32, status.size)
-        count = kernels.front_points(
-            kernels.Front(at.tip_mm, at.feed, self._gate, prepared.over_x, prepared.over_y),
+        count, above = kernels.front_points(
+            kernels.Front(at.tip_mm, at.feed, self._gate, *prepared),
             self._rows,
             self._edge_arrays,
             status,
             points,
             entries,
         )
+        if prepared.known:
+            # that changes how fast the next answers are found, not what they are
+            self._worth = above > _WORTH * (above + count)
         points, entries = points[:count], entries[:count]
         steps = entries // status[0].size if len(pending) else entries
         inside = self._in_material(points, steps, at, workpiece, pending)

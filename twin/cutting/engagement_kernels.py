@@ -45,12 +45,14 @@ class Front(NamedTuple):
     Attributes:
         tips, feeds: shape (steps, 3): tool tips in mm and unit feed directions.
         gate: shape (elements or more,), least n . f of a front point of each element.
-        over_x, over_y: heights of the material by the planes across x and across y; there is none where both are lower.
+        known: whether heights of the material are known.
+        over_x, over_y: those by the planes across x and across y; there is no material where both are lower.
     """
 
     tips: FloatArray
     feeds: FloatArray
     gate: FloatArray
+    known: bool
     over_x: HeightMap
     over_y: HeightMap
 
@@ -63,7 +65,7 @@ def front_points(
     status: NDArray[np.int8],
     points: FloatArray,
     entries: NDArray[np.int32],
-) -> int:
+) -> tuple[int, int]:
     """Midpoints of the edge elements, at every angle of the maps, whose normal looks along the feed.
 
     Args:
@@ -72,12 +74,12 @@ def front_points(
         entries: shape (n,), their indices in the maps, counted through steps, rows and elements.
 
     Returns:
-        Number of points.
+        Number of points, and of those above all material, which are left out.
     """
-    tips, feeds, gate = front.tips, front.feeds, front.gate
+    tips, feeds, gate, known = front.tips, front.feeds, front.gate, front.known
     cos_theta, sin_theta, elements = angles.cos, angles.sin, status.shape[2]
     radius, height, cos_kappa, sin_kappa = edges.radius, edges.height, edges.cos_kappa, edges.sin_kappa
-    n = 0
+    n, above = 0, 0
     rows = len(cos_theta)
     for s in range(len(tips)):
         x, y, z = tips[s, 0], tips[s, 1], tips[s, 2]
@@ -93,13 +95,15 @@ def front_points(
                 if normal_along_feed(across, down, sin_kappa[i], cos_kappa[i]) > gate[i]:
                     status[s, j, i] = 0
                     px, py, pz = x + radius[i] * cos_t, y + radius[i] * sin_t, z + height[i]
-                    if pz < _height_at(front.over_x, px, py) or pz < _height_at(front.over_y, py, px):
-                        points[n, 0], points[n, 1], points[n, 2] = px, py, pz
-                        entries[n] = first + i
-                        n += 1
+                    if known and pz >= _height_at(front.over_x, px, py) and pz >= _height_at(front.over_y, py, px):
+                        above += 1
+                        continue
+                    points[n, 0], points[n, 1], points[n, 2] = px, py, pz
+                    entries[n] = first + i
+                    n += 1
                 else:
                     status[s, j, i] = -1
-    return n
+    return n, above
 
 
 @inlined
