@@ -6,7 +6,7 @@ The polygon arithmetic is in `twin.geometry.column_cells.cut_kernels`.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 from typing import NamedTuple, Self, TypeAlias
@@ -25,8 +25,9 @@ from twin.workpiece.trislice import TriSlices
 _ORDER = (0, 1, 2)
 #: Sweeps no longer than this many pitches are cut only where there is material in their way.
 _SHORT_PITCHES = 3.0
-#: At least this many sweeps are cut as a union.
-_UNITED = 3
+#: At least this many sweeps are cut as a union; none of them begins farther from the end of the one before, or is
+#: longer, than this many diameters.
+_UNITED, _CLOSE_DIAMETERS = 3, 4.0
 #: After this many chains that left the volume at their end to the next sweep, one is cut whole.
 _CHAINS_LEFT = 3
 
@@ -179,11 +180,16 @@ class Removal:
         return float(self.workpiece.low_mm[2] + (levels + 0.5) * self.workpiece.pitch_mm[2])
 
     def united(self, sweeps: Sequence[Sweep]) -> list[Sweep | SweepUnion]:
-        """Sweeps of one body as one union, if they are several that reach above the material."""
-        union = SweepUnion.of(sweeps)
-        if len(sweeps) < _UNITED or not union.reaches_above(self._top_mm(self.workpiece.levels())):
-            return list(sweeps)
-        return [union]
+        """Sweeps of one body, in unions where several are close to each other and reach above the material."""
+        top_mm = self._top_mm(self.workpiece.levels())
+        found: list[Sweep | SweepUnion] = []
+        for together in _close(sweeps):
+            union = SweepUnion.of(together)
+            if len(together) < _UNITED or not union.reaches_above(top_mm):
+                found.extend(together)
+            else:
+                found.append(union)
+        return found
 
     def _settled(self, axis: int, chain: Chain, count: int) -> int:
         """The first plane of a family on which the chain's section is in one piece; see `Chain.settled_mm`."""
@@ -224,3 +230,17 @@ class Removal:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _close(sweeps: Sequence[Sweep]) -> Iterator[list[Sweep]]:
+    """Consecutive sweeps that are short and close to each other."""
+    held: list[Sweep] = []
+    for sweep in sweeps:
+        reach = _CLOSE_DIAMETERS * 2.0 * sweep.body.radius_mm
+        far = held and float(np.abs(sweep.start_mm - held[-1].end_mm).max()) > reach
+        if held and (far or sweep.length_mm > reach or held[-1].length_mm > reach):
+            yield held
+            held = []
+        held.append(sweep)
+    if held:
+        yield held

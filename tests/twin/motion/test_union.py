@@ -109,6 +109,16 @@ def test_the_start_of_a_union_that_has_been_cut_is_not_cut_again() -> None:
     assert again == pytest.approx(0.0, abs=0.02)
 
 
+def test_sweeps_far_from_each_other_and_long_ones_are_not_united() -> None:
+    near = np.column_stack((np.linspace(2.0, 4.0, 5), np.full(5, 5.0), np.full(5, -1.0)))
+    first, then = sweeps("ball", near), sweeps("ball", near + np.array((60.0, 0.0, 0.0)))
+    long = sweeps("ball", np.array([near[-1], near[-1] + np.array((40.0, 0.0, 0.0))]))
+    with Removal(CellSlices(box_slices((0, 0, -6), (80, 10, 0), 2.0)), CHORD_MM, 1) as removal:
+        apart = removal.united([*first, *then])
+        assert [len(u.starts_mm) for u in apart if isinstance(u, SweepUnion)] == [4, 4]
+        assert removal.united([*first, *long])[1:] == long
+
+
 def test_short_flutes_are_cut_one_by_one() -> None:
     body = Body.of(tool_shape("flat", 6.0, 1.0), chord_mm=CHORD_MM)
     corners = np.column_stack((np.linspace(6.0, 9.0, 5), np.full(5, 10.0), np.full(5, -3.0)))
