@@ -236,12 +236,15 @@ def _lowest_of(body: BodyShape, row: FloatArray, w: float, u: float) -> float:
 
 @helper
 def _envelope(body: BodyShape, plane: _Plane, active: NDArray[np.int64], u: float) -> float:
-    """Lowest point of several sweeps, by their numbers, at u."""
+    """Lowest point of several sweeps, by their numbers, at u.
+
+    Where rounding hides all of them, at the end of their range, it is the top.
+    """
     lo = math.inf
     for k in active:
         if plane.reaching[k, TIP] < lo:
             lo = min(lo, _lowest_of(body, plane.reaching[k], plane.w, u))
-    return lo
+    return lo if lo < math.inf else plane.top
 
 
 @helper
@@ -271,12 +274,8 @@ def _begin(
 
 @helper
 def _write(u: float, lo: float, new: bool, top: float, strips: Strips, used: NDArray[np.int64]) -> bool:
-    """Append a node to the last strip; returns whether it fits.
-
-    At the end of the range, rounding may hide the sweep; the strip is empty there then.
-    """
+    """Append a node to the last strip; returns whether it fits."""
     n = used[NODES]
-    lo = lo if lo < math.inf else top
     if n >= len(strips.nodes):
         return False
     strips.nodes[n, 0], strips.nodes[n, 1], strips.nodes[n, 2] = u, lo, max(lo, top)
