@@ -69,12 +69,17 @@ def level_strips(
     pieces = np.empty((4 * len(strips.nodes) + 64, _PIECE))
     used[STRIPS], used[NODES] = 0, 0
     wall_from, wall_to = _same_between(body, sweeps)
-    count, before = 0, -math.inf
+    count, n, before = 0, 0, -math.inf
     for i in range(planes.planes):
         z = planes.first_w + i * planes.pitch
-        if not (wall_from <= before and z <= wall_to):
-            count = _hulls(body, sweeps, z, planes.chord, parts, hulls)
+        same_hulls = wall_from <= before and z <= wall_to
         before = z
+        if same_hulls and np.array_equal(bins.heights[i], bins.heights[i - 1]):
+            if not _collect(pieces, n, i, strips, used):
+                return False
+            continue
+        if not same_hulls:
+            count = _hulls(body, sweeps, z, planes.chord, parts, hulls)
         radius = radius_at(body, z - sweeps[0, 0]) if planes.start_is_cut and z >= sweeps[0, 0] else 0.0
         same = SAME_SECTION * body.meridian.radius
         plane = _Plane(hulls[:count], planes.chord, same, sweeps[0, 2], sweeps[0, 4], radius)
