@@ -112,7 +112,7 @@ class Prepared(NamedTuple):
 
 
 #: Heights of the material are worth finding where this part of the front is above it; elsewhere they are tried again
-#: after so many calls.
+#: at every call of this number.
 _WORTH, _WITHOUT = 0.3, 16
 #: Material may be anywhere.
 _ANY_HEIGHT = HeightMap(np.full((1, 1), math.inf), -1e12, -1e12, 5e-13, 5e-13)

@@ -199,7 +199,7 @@ class CellFamily:
         contains(points_mm, planes, self.grid, self.store, votes, least, most)
 
     def tested(self, planes: Planes) -> Family:
-        """What a test of points needs."""
+        """The family as a test of points takes it."""
         return Family(planes, self.grid, self.store)
 
     def region(self, k: int) -> Region:
